@@ -1,0 +1,26 @@
+"""From raw captures to clean ones: head motion, noise, gaps, neutral pose (paper A section 4)."""
+
+from corpus_tools.cleaning.corpus import CleanedCorpus, clean_captures, neutral_pose
+from corpus_tools.cleaning.gaps import gaps, marker_gaps
+from corpus_tools.cleaning.head_motion import (
+    HeadMotion,
+    estimate_head_motion,
+    reference_shape,
+    remove_head_motion,
+)
+from corpus_tools.cleaning.kalman import kalman_smooth, measurement_sd_mm, smooth_channels
+
+__all__ = [
+    "CleanedCorpus",
+    "HeadMotion",
+    "clean_captures",
+    "estimate_head_motion",
+    "gaps",
+    "kalman_smooth",
+    "marker_gaps",
+    "measurement_sd_mm",
+    "neutral_pose",
+    "reference_shape",
+    "remove_head_motion",
+    "smooth_channels",
+]

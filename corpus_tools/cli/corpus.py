@@ -1,0 +1,111 @@
+"""``corpus-tools init|check|units|coverage``: a folder of recordings becomes a corpus, and what is in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from corpus_tools.cli.common import emit_json, progress_bar, say
+from corpus_tools.core import InputError
+from corpus_tools.fragments import coverage, unit_views
+from corpus_tools.io import find_recordings, init_corpus
+from corpus_tools.pipeline import check_corpus, health_lines, open_corpus
+from corpus_tools.speech import phone_set
+
+__all__ = ["register"]
+
+Folder = Annotated[Path, typer.Argument(help="Corpus folder (with corpus.toml).")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")]
+
+
+def _settings(pairs: list[str]) -> dict[str, str]:
+    settings: dict[str, str] = {}
+    for pair in pairs:
+        key, sign, value = pair.partition("=")
+        if not sign or not key.strip():
+            raise InputError(f"--set '{pair}' is not of the form KEY=VALUE, as in --set frame_time=centre.")
+        settings[key.strip()] = value.strip()
+    return settings
+
+
+def init(
+    folder: Annotated[Path, typer.Argument(help="New folder for corpus.toml and the work files.")],
+    motion: Annotated[
+        str, typer.Option("--motion", help="Pattern of the marker files, e.g. 'markers/{id}.npz'.")
+    ],
+    audio: Annotated[str | None, typer.Option("--audio", help="Pattern of the sound files.")] = None,
+    labels: Annotated[str | None, typer.Option("--labels", help="Pattern of the TextGrids.")] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            help="KEY=VALUE for corpus.toml: frame_time=start|centre, head_scale=true|false, phones=arpabet, "
+            "marker_units=mm, reference_markers='head*', language=en, ... May stand several times.",
+        ),
+    ] = None,
+    json_: Json = False,
+) -> None:
+    """Describe existing recordings as a corpus: they are used where they are, never copied or altered.
+
+    Example: corpus-tools init WORK --motion 'm/{id}.npz' --audio 'a/{id}.wav' --labels 't/{id}.TextGrid'
+    """
+    settings = _settings(set_ or [])
+    if settings.get("phones"):
+        phone_set(settings["phones"])  # an unknown one is refused before anything is written
+    description = init_corpus(folder, motion=motion, audio=audio, labels=labels, settings=settings)
+    found = find_recordings(description)
+    say(f"{folder / 'corpus.toml'}: {len(found)} recordings. Next: corpus-tools check {folder}")
+    if json_:
+        emit_json({"corpus": str(folder), "recordings": len(found)})
+
+
+def check(corpus: Folder, json_: Json = False) -> None:
+    """Say what is in a corpus and what to mend: rates, gaps, missing files, labels, lengths, head scale."""
+    with progress_bar("reading") as progress:
+        report = check_corpus(corpus, progress)
+    if json_:
+        emit_json(report)
+        return
+    for line in health_lines(report):
+        say(line)
+
+
+def units(corpus: Folder, json_: Json = False) -> None:
+    """Count the units that the recordings give: sentences, words, diphones."""
+    with progress_bar("reading") as progress:
+        opened = open_corpus(corpus, progress=progress)
+    views = unit_views(opened.inventory)
+    data: dict[str, Any] = {
+        "corpus": opened.description.name,
+        "recordings": len(opened.recordings),
+        **views.as_dict(),
+    }
+    for key, value in data.items():
+        if not isinstance(value, dict | list):
+            say(f"{key.replace('_', ' ')}: {value}")
+    if json_:
+        emit_json(data)
+
+
+def coverage_(corpus: Folder, json_: Json = False) -> None:
+    """Say which diphones the corpus covers, and how much of each sentence the others cover."""
+    with progress_bar("reading") as progress:
+        opened = open_corpus(corpus, progress=progress)
+    report = coverage(opened.inventory, [r.utterance for r in opened.recordings], leave_one_out=True)
+    data = report.as_dict()
+    say(
+        f"{data['n_diphone_types']} diphone types; leave-one-out coverage mean {data['mean']:.3f}, "
+        f"least {data['min']:.3f}; {data['n_full']} of {data['n_utterances']} sentences fully covered."
+    )
+    if json_:
+        emit_json(data)
+
+
+def register(app: typer.Typer) -> None:
+    """Enter the commands in the app."""
+    app.command("init")(init)
+    app.command("check")(check)
+    app.command("units")(units)
+    app.command("coverage")(coverage_)

@@ -1,0 +1,138 @@
+"""The sections of a config, one class each: every value that changes a result, with bounds and a sentence.
+
+A new section is a class here (or in a module of its own) under ``@section("name")``; loading, export, the
+diff, the schema and the command line pick it up from the registry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from corpus_tools.core import Registry
+
+__all__ = [
+    "SECTIONS",
+    "AlignmentSettings",
+    "BlendSettings",
+    "CleaningSettings",
+    "ClosureSettings",
+    "DeformSettings",
+    "OutputSettings",
+    "RetargetSettings",
+    "Section",
+    "SelectionSettings",
+    "section",
+]
+
+
+class Section(BaseModel):
+    """Base of every section: unknown keys are refused, values are checked, instances do not change."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+SECTIONS: Registry[type[Section]] = Registry("config section")
+
+S = TypeVar("S", bound=type[Section])
+
+
+def section(name: str) -> Callable[[S], S]:
+    """Return a decorator that registers a section under `name`."""
+
+    def enter(cls: S) -> S:
+        SECTIONS.add(name, cls)
+        return cls
+
+    return enter
+
+
+@section("cleaning")
+class CleaningSettings(Section):
+    """Paper A section 4: noise, gaps, head motion."""
+
+    cutoff_hz: float = Field(10.0, gt=0, le=60, description="Kalman smoother: frequency kept, Hz.")
+    head_cutoff_mm: float = Field(
+        1.0, gt=0, le=20, description="Residual at which a head marker is doubted, mm."
+    )
+    head_iterations: int = Field(6, ge=1, le=50, description="Reweighting rounds of the head-motion fit.")
+
+
+@section("selection")
+class SelectionSettings(Section):
+    """Paper A section 5.1.1: which fragments speak the utterance."""
+
+    method: str = Field("viterbi", description="Method id: greedy (as printed, mended) or viterbi.")
+    duration: float = Field(1.0, ge=0, description="Weight of the difference in phone timing.")
+    context: float = Field(0.3, ge=0, description="Weight of the neighbours left and right of the unit.")
+    backoff: float = Field(2.0, ge=0, description="Cost of a phone that its viseme class stands in for.")
+    flagged: float = Field(1.0, ge=0, description="Weight of filled or doubtful frames inside the unit.")
+    join: float = Field(1.0, ge=0, description="Weight of the posture distance at a join.")
+    velocity: float = Field(
+        0.3, ge=0, description="Weight of the velocity distance at a join, relative to join."
+    )
+    allow_backoff: bool = Field(True, description="Let a viseme class stand in where a diphone is missing.")
+    components: int = Field(12, ge=1, le=60, description="Principal components of the join distance.")
+    prune: int = Field(100, ge=1, description="Candidates kept per diphone by Viterbi.")
+
+
+@section("alignment")
+class AlignmentSettings(Section):
+    """Paper A section 5.1.2: time warp and resampling."""
+
+    warp: Literal["linear", "pchip"] = Field("linear", description="Time map between labels.")
+    resampling: Literal["inverse", "paper"] = Field(
+        "inverse", description="Fit on the source clock, or on the warped samples as printed."
+    )
+    shape_c: float = Field(
+        0.2, ge=0.12, le=1.0, description="Inverse multiquadric: eps = c / smallest spacing."
+    )
+    rate_hz: float = Field(120.0, gt=0, le=1000, description="Frame rate of the synthesised motion, Hz.")
+
+
+@section("blend")
+class BlendSettings(Section):
+    """Paper A section 5.1.3, eq. (2): the overlap and its weighting function g(u)."""
+
+    weighting: str = Field("smootherstep", description="g(u), by name.")
+    shape: float = Field(0.0, ge=-1, le=1, description="Moves the crossover of g(u): early -1 .. late +1.")
+    rule: Literal["shared-phone", "paper"] = Field("shared-phone", description="What limits the overlap.")
+    overlap_s: float = Field(0.12, ge=0, le=0.5, description="Longest overlap, s.")
+    fraction: float = Field(
+        0.5, gt=0, le=1, description="Rule 'paper': share of the smallest phone interval."
+    )
+
+
+@section("closure")
+class ClosureSettings(Section):
+    """Closing of the lips in bilabials after blending; our own step, beyond paper A."""
+
+    project: bool = Field(True, description="Close the lips where a bilabial stayed open.")
+    components: int = Field(16, ge=1, le=60, description="Principal components that carry the correction.")
+    iterations: int = Field(3, ge=1, le=20, description="Rounds of the projection.")
+
+
+@section("retarget")
+class RetargetSettings(Section):
+    """Paper A section 6: the volume warp from the actor's neutral to the mesh."""
+
+    kernel: str = Field("cubic", description="Radial kernel of the warp.")
+    smoothing: float = Field(1e-2, ge=0, description="Smoothing of the warp, in a unit box.")
+    contact: bool = Field(True, description="Keep the lips from passing through each other.")
+
+
+@section("deform")
+class DeformSettings(Section):
+    """Paper A section 6: from markers to the vertices of a mesh."""
+
+    mesh: str = Field("base", description="A bundled head by name, or a mesh file.")
+    deformer: str = Field("rbf", description="Deformer by name.")
+
+
+@section("output")
+class OutputSettings(Section):
+    """What synth writes."""
+
+    seed: int = Field(0, ge=0, description="Seed of everything random.")

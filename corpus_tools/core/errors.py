@@ -1,0 +1,107 @@
+"""Errors that a user reads: one sentence each, saying where, what was expected and what to do.
+
+::
+
+    WorkbenchError                exit 2, printed without a traceback
+    ├── InputError                a file or an argument that cannot be used
+    │   ├── CorpusError           corpus.toml, a missing or empty corpus
+    │   ├── LabelError            tiers, times, phones outside the set
+    │   ├── MotionError           marker files
+    │   ├── MeshError             mesh files and correspondences
+    │   └── ConfigError           configs: unknown keys, values out of range
+    ├── OutputError               a folder or file that cannot be written
+    ├── MissingExtraError         an optional package or program that is not installed
+    └── SynthesisError            a result of the method: no unit covers a diphone, ...
+        └── NoUnitError           carries the missing diphones
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = [
+    "ConfigError",
+    "CorpusError",
+    "InputError",
+    "LabelError",
+    "MeshError",
+    "MissingExtraError",
+    "MotionError",
+    "NoUnitError",
+    "OutputError",
+    "SynthesisError",
+    "WorkbenchError",
+    "suggestion",
+]
+
+
+class WorkbenchError(Exception):
+    """Base of every error that is the user's to mend; ``str(error)`` is the sentence to show."""
+
+
+class InputError(WorkbenchError):
+    """A file or an argument that cannot be used as it is."""
+
+
+class CorpusError(InputError):
+    """A corpus folder or its ``corpus.toml`` that cannot be used."""
+
+
+class LabelError(InputError):
+    """Labels that cannot be used: cut files, disordered times, phones outside the set."""
+
+
+class MotionError(InputError):
+    """A marker file that cannot be used."""
+
+
+class MeshError(InputError):
+    """A mesh, or its correspondence to the markers, that cannot be used."""
+
+
+class ConfigError(InputError):
+    """A config with an unknown key or a value out of range."""
+
+
+class OutputError(WorkbenchError):
+    """A file or folder that cannot be written."""
+
+
+class MissingExtraError(WorkbenchError):
+    """An optional package or program is needed and not installed."""
+
+
+class SynthesisError(WorkbenchError):
+    """The method itself could not do what was asked; the sentence says why."""
+
+
+class NoUnitError(SynthesisError):
+    """No unit of the inventory covers a diphone of the target, not even by backoff.
+
+    Parameters
+    ----------
+    diphones : iterable of (str, str)
+        The diphones that no unit covers.
+    by_class : bool
+        Viseme classes were tried too.
+    """
+
+    def __init__(self, diphones: Iterable[tuple[str, str]], by_class: bool = True) -> None:
+        self.diphones = tuple(diphones)
+        names = ", ".join(f"{a}-{b}" for a, b in self.diphones)
+        tried, advice = (
+            (", not even by viseme class", "a wider backoff")
+            if by_class
+            else ("", "backoff to viseme classes")
+        )
+        super().__init__(
+            f"No unit of the corpus covers {names}{tried}: "
+            f"record a sentence that holds it, or allow {advice}."
+        )
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the nearest known word, or an empty string."""
+    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f"; did you mean '{near[0]}'?" if near else ""

@@ -1,0 +1,120 @@
+"""Files and folders appear whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from corpus_tools.core.errors import OutputError
+
+__all__ = ["atomic_file", "atomic_folder", "check_writable"]
+
+
+def _refusal(path: Path, error: OSError) -> OutputError:
+    reason = error.strerror or str(error)
+    return OutputError(f"Cannot write to '{path}': {reason}; choose a folder you may write to.")
+
+
+def check_writable(path: Path) -> None:
+    """Raise :class:`OutputError` when nothing can be written at `path` (a folder to be made or used)."""
+    try:
+        parent = path
+        while not parent.exists() and not parent.is_symlink() and parent != parent.parent:
+            parent = parent.parent
+        if not parent.is_dir():
+            raise OutputError(f"Cannot write to '{path}': '{parent}' is not a folder; choose another folder.")
+        with tempfile.NamedTemporaryFile(dir=parent, prefix=".writable-"):
+            pass
+    except OSError as error:
+        raise _refusal(path, error) from error
+
+
+@contextlib.contextmanager
+def atomic_file(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield a temporary path beside `path`; on success it takes its place, else it is removed."""
+    target = Path(path)
+    temporary: Path | None = None
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=_hidden(target), suffix=".part")
+        os.close(handle)
+        temporary = Path(name)
+        yield temporary
+        with temporary.open("rb+") as stream:
+            os.fsync(stream.fileno())
+        umask = os.umask(0)
+        os.umask(umask)
+        temporary.chmod(0o666 & ~umask)
+        temporary.replace(target)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(f"Cannot write '{target}': {reason}; choose a place you may write to.") from error
+    finally:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def atomic_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield a temporary folder beside `path`; on success its files move into `path`, else nothing remains.
+
+    Files of the same name in an existing folder are replaced, all of them or, after an error or Ctrl-C, none;
+    other files there are left alone.
+    """
+    target = Path(path)
+    check_writable(target)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(dir=target.parent, prefix=_hidden(target), suffix=".part"))
+    except OSError as error:
+        raise _refusal(target, error) from error
+    try:
+        yield temporary
+        _move_all(temporary, target)
+    except OSError as error:
+        raise _refusal(target, error) from error
+    finally:
+        try:
+            shutil.rmtree(temporary, ignore_errors=True)
+        except BaseException:  # interrupted: to the end all the same
+            shutil.rmtree(temporary, ignore_errors=True)
+            raise
+
+
+def _hidden(target: Path) -> str:
+    """Return the beginning of a temporary name beside `target`, short enough for every file system."""
+    return f".{target.name[:40]}."
+
+
+def _move_all(source: Path, target: Path) -> None:
+    """Move every file of `source` into `target`, or none of them."""
+    existed = target.exists()
+    target.mkdir(parents=True, exist_ok=True)
+    names = sorted(item.name for item in source.iterdir())
+    for name in names:
+        if (target / name).exists() and ((target / name).is_dir() or (source / name).is_dir()):
+            raise OutputError(f"Cannot write '{target / name}': it is there already; choose another folder.")
+    old = Path(tempfile.mkdtemp(dir=source, prefix=".old."))
+    try:
+        for name in names:
+            if (target / name).exists() or (target / name).is_symlink():
+                (target / name).replace(old / name)
+            (source / name).replace(target / name)
+    except BaseException:
+        _move_back(source, target, old, names)
+        if not existed:
+            target.rmdir()
+        raise
+
+
+def _move_back(source: Path, target: Path, old: Path, names: list[str]) -> None:
+    """Undo a broken-off move; where it broke off is seen from what lies where."""
+    for name in names:
+        if not (source / name).exists():
+            (target / name).replace(source / name)
+        if (old / name).exists() or (old / name).is_symlink():
+            (old / name).replace(target / name)

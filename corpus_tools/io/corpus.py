@@ -1,0 +1,234 @@
+"""Finding the recordings of a corpus, loading them, and making a corpus over an existing folder."""
+
+from __future__ import annotations
+
+import glob
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from corpus_tools.core import Audio, Capture, CorpusError, LabelError, Labels, MotionError
+from corpus_tools.core.errors import suggestion
+from corpus_tools.io.description import (
+    CORPUS_FILE,
+    CorpusDescription,
+    description_from_dict,
+    write_description,
+)
+from corpus_tools.io.formats import read_audio, read_labels, read_markers
+
+__all__ = ["RecordingFiles", "find_recordings", "init_corpus", "load_audio", "load_capture", "load_labels"]
+
+FARTHEST_MM = 1e6
+"""No face is captured a kilometre from the origin (our choice): such numbers are another unit, or damage."""
+
+_TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4}
+_SETTABLE = (
+    "frame_time",
+    "head_scale",
+    "phones",
+    "marker_units",
+    "reference_markers",
+    "language",
+    "name",
+    "phone_tier",
+    "word_tier",
+    "audio_offset_s",
+)
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class RecordingFiles:
+    """The files of one recording; audio and labels are None where the file is not there."""
+
+    id: str
+    motion: Path
+    audio: Path | None = None
+    labels: Path | None = None
+
+
+def _absolute(description: CorpusDescription, pattern: str) -> Path:
+    path = Path(pattern)
+    return path if path.is_absolute() else description.folder / path
+
+
+def _ids(pattern: Path) -> dict[str, Path]:
+    """Return id -> path of every file that a pattern matches; an id holds no path separator."""
+    parts = pattern.parts
+    first = next(i for i, part in enumerate(parts) if "{id}" in part)
+    root = Path(*parts[:first]) if first else Path()
+    if not os.path.isdir(root):  # noqa: PTH112 - False also for names that no file system takes
+        return {}
+    wildcard = "/".join(glob.escape(part).replace("{id}", "*") for part in parts[first:])
+    text = re.escape("/".join(parts[first:])).replace(re.escape("{id}"), "(?P<id>[^/]+)", 1)
+    regex = re.compile(text.replace(re.escape("{id}"), "(?P=id)") + r"\Z")
+    found = {}
+    for path in root.glob(wildcard):
+        match = regex.match(path.relative_to(root).as_posix())
+        if match and path.is_file() and not path.name.startswith("."):
+            found[match["id"]] = path
+    return found
+
+
+def _optional(description: CorpusDescription, pattern: str, name: str) -> Path | None:
+    if not pattern:
+        return None
+    path = Path(str(_absolute(description, pattern)).replace("{id}", name))
+    return path if os.path.isfile(path) else None  # noqa: PTH113 - as above
+
+
+def find_recordings(description: CorpusDescription) -> list[RecordingFiles]:
+    """Return the files of every recording, sorted by id.
+
+    Raises
+    ------
+    CorpusError
+        The motion pattern matches no file; the message says where was looked.
+    """
+    pattern = _absolute(description, description.motion)
+    found = _ids(pattern)
+    if not found:
+        raise CorpusError(
+            f"No motion files in the corpus '{description.folder}': '{pattern}' matches nothing; "
+            f"check 'motion' in '{description.file}'."
+        )
+    return [
+        RecordingFiles(
+            name,
+            found[name],
+            _optional(description, description.audio, name),
+            _optional(description, description.labels, name),
+        )
+        for name in sorted(found)
+    ]
+
+
+def load_audio(files: RecordingFiles) -> Audio | None:
+    """Return the sound of a recording, or None when it has none."""
+    return read_audio(files.audio) if files.audio else None
+
+
+def load_capture(description: CorpusDescription, files: RecordingFiles) -> Capture:
+    """Read the motion of a recording: mm, on the clock of its audio, audio attached.
+
+    Frame times follow ``frame_time`` (GRID video frames are centred) and ``audio_offset_s``.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or a marker lies impossibly far away.
+    """
+    capture = read_markers(files.motion)
+    factor = _TO_MM[description.marker_units]
+    farthest = np.abs(np.nan_to_num(capture.positions_mm)).max() * factor
+    if farthest > FARTHEST_MM:
+        raise MotionError(
+            f"'{files.motion}' has a marker {farthest:.3g} mm from the origin, where a face within "
+            f"{FARTHEST_MM:.0e} mm was expected; check 'marker_units' in '{description.file}'."
+        )
+    half = 0.5 / capture.rate_hz if description.frame_time == "centre" else 0.0
+    return replace(
+        capture,
+        positions_mm=np.asarray(capture.positions_mm) * factor,
+        start_s=half + description.audio_offset_s,
+        audio=load_audio(files),
+    )
+
+
+def load_labels(description: CorpusDescription, files: RecordingFiles) -> Labels:
+    """Read the labels of a recording.
+
+    Raises
+    ------
+    LabelError
+        It has none; the message says which file was expected.
+    """
+    if files.labels is None:
+        if not description.labels:
+            raise LabelError(f"'{files.id}' has no labels: '{description.file}' names no pattern 'labels'.")
+        path = str(_absolute(description, description.labels)).replace("{id}", files.id)
+        raise LabelError(f"'{files.id}' has no labels: '{path}' is not there.")
+    return read_labels(files.labels)
+
+
+def _setting(key: str, text: str) -> Any:
+    if key not in _SETTABLE:
+        hint = suggestion(key, _SETTABLE)
+        raise CorpusError(
+            f"--set {key}={text}: unknown key '{key}'{hint or '; known: ' + ', '.join(_SETTABLE) + '.'}"
+        )
+    if key == "head_scale":
+        if text.lower() not in ("true", "false"):
+            raise CorpusError(f"--set head_scale={text}: true or false was expected.")
+        return text.lower() == "true"
+    if key == "audio_offset_s":
+        try:
+            return float(text)
+        except ValueError:
+            raise CorpusError(f"--set audio_offset_s={text}: seconds were expected, as in 0.02.") from None
+    return text
+
+
+def _stored(pattern: str | None, folder: Path) -> str:
+    """Return a pattern as it is kept: relative to `folder` when below it, else absolute."""
+    if not pattern:
+        return ""
+    absolute = Path.cwd() / Path(pattern).expanduser()
+    if ".." in absolute.parts and "\0" not in pattern:
+        absolute = absolute.resolve()
+    try:
+        return absolute.relative_to(folder.resolve()).as_posix()
+    except ValueError:
+        return absolute.as_posix()
+
+
+def init_corpus(
+    folder: str | Path,
+    *,
+    motion: str,
+    audio: str | None = None,
+    labels: str | None = None,
+    settings: Mapping[str, str] | None = None,
+    force: bool = False,
+) -> CorpusDescription:
+    """Make a corpus over existing recordings: writes ``corpus.toml`` into `folder` and nothing else.
+
+    Parameters
+    ----------
+    folder : path
+        Made when it does not exist.
+    motion, audio, labels : str
+        Patterns with ``{id}``; relative ones start from the present working directory.
+    settings : mapping of str to str
+        Further keys of ``corpus.toml``, as after ``--set``.
+    force : bool
+        Replace a ``corpus.toml`` that is there.
+
+    Raises
+    ------
+    CorpusError
+        There is a corpus already, a key or value is unknown, or the motion pattern matches nothing.
+    """
+    place = Path(folder)
+    if os.path.exists(place / CORPUS_FILE) and not force:  # noqa: PTH110 - as above
+        raise CorpusError(f"'{place / CORPUS_FILE}' is there already; edit it, or choose another folder.")
+    data: dict[str, Any] = {key: _setting(key, text) for key, text in (settings or {}).items()}
+    data |= {
+        "motion": _stored(motion, place),
+        "audio": _stored(audio, place),
+        "labels": _stored(labels, place),
+    }
+    description = description_from_dict(data, place, where="corpus-tools init")
+    pattern = _absolute(description, description.motion)
+    if not _ids(pattern):
+        raise CorpusError(
+            f"corpus-tools init: --motion '{motion}' matches no file: looked for '{pattern}', "
+            "where {id} stands for a recording's name; check the path."
+        )
+    write_description(description)
+    return description

@@ -1,0 +1,41 @@
+"""Meshes: the bundled heads, mesh files, lips, jaw, and the deformers that tie vertices to markers."""
+
+from corpus_tools.mesh.bundle import CHARACTERS, bundled_head, bundled_morph_mm, bundled_morphs
+from corpus_tools.mesh.deform import DEFORMERS, Binding, bind_rbf
+from corpus_tools.mesh.files import mesh_by_name_or_file, read_mesh, write_mesh
+from corpus_tools.mesh.jaw import JAW_PARTS, jaw_hinge_mm, jaw_motion
+from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, close_lips, lower_side, signed_lip_aperture_mm
+from corpus_tools.mesh.rbf import DISPLACEMENT_KERNELS, STILL_MARKERS, displacement_basis
+from corpus_tools.mesh.regions import SkinRegion, skin_regions
+from corpus_tools.mesh.topology import edge_loop, edges_of, geodesic_mm, triangles, vertex_normals
+
+__all__ = [
+    "CHARACTERS",
+    "DEFORMERS",
+    "DISPLACEMENT_KERNELS",
+    "JAW_PARTS",
+    "LOWER_LIP",
+    "STILL_MARKERS",
+    "UPPER_LIP",
+    "Binding",
+    "SkinRegion",
+    "bind_rbf",
+    "bundled_head",
+    "bundled_morph_mm",
+    "bundled_morphs",
+    "close_lips",
+    "displacement_basis",
+    "edge_loop",
+    "edges_of",
+    "geodesic_mm",
+    "jaw_hinge_mm",
+    "jaw_motion",
+    "lower_side",
+    "mesh_by_name_or_file",
+    "read_mesh",
+    "signed_lip_aperture_mm",
+    "skin_regions",
+    "triangles",
+    "vertex_normals",
+    "write_mesh",
+]

@@ -1,0 +1,33 @@
+"""Stages over an opened corpus, and the folder that a synthesis writes."""
+
+from corpus_tools.pipeline.closing import LipModel
+from corpus_tools.pipeline.head import Animation, Head, animate, prepare_head, vertex_frames
+from corpus_tools.pipeline.health import check_corpus, health_lines
+from corpus_tools.pipeline.opened import OpenCorpus, Progress, open_corpus
+from corpus_tools.pipeline.outputs import write_motion, write_synthesis
+from corpus_tools.pipeline.provenance import code_hash, corpus_provenance, library_versions
+from corpus_tools.pipeline.stages import Synthesis, align_units, blend_units, select_units, synthesise
+
+__all__ = [
+    "Animation",
+    "Head",
+    "LipModel",
+    "OpenCorpus",
+    "Progress",
+    "Synthesis",
+    "align_units",
+    "animate",
+    "blend_units",
+    "check_corpus",
+    "code_hash",
+    "corpus_provenance",
+    "health_lines",
+    "library_versions",
+    "open_corpus",
+    "prepare_head",
+    "select_units",
+    "synthesise",
+    "vertex_frames",
+    "write_motion",
+    "write_synthesis",
+]

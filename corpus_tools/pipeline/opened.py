@@ -1,0 +1,320 @@
+"""A corpus opened for synthesis: cleaned recordings, inventory, neutral pose, natural distributions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import numpy as np
+
+from corpus_tools.cleaning import clean_captures, neutral_pose
+from corpus_tools.config import Config, ConfigBase
+from corpus_tools.core import (
+    BoolArray,
+    Capture,
+    CorpusError,
+    FloatArray,
+    FrameFlag,
+    InputError,
+    Recording,
+    UnitInventory,
+    Utterance,
+    WorkbenchError,
+)
+from corpus_tools.core.errors import suggestion
+from corpus_tools.fragments import build_inventory
+from corpus_tools.io import (
+    CorpusDescription,
+    RecordingFiles,
+    find_recordings,
+    load_capture,
+    load_labels,
+    read_description,
+)
+from corpus_tools.pipeline.closing import LipModel, lip_model
+from corpus_tools.pipeline.threads import one_thread
+from corpus_tools.pipeline.usable import chosen_markers, motion_problem, seen_markers, usual_markers
+from corpus_tools.speech import PhoneSet, lip_aperture_mm, phone_set, recorded_utterance
+from corpus_tools.synthesis import (
+    NaturalDistribution,
+    SelectionModel,
+    natural_distribution,
+    prepare_selection,
+)
+
+__all__ = ["OpenCorpus", "Progress", "face_only", "open_corpus", "reference_columns", "silent"]
+
+Progress = Callable[[float, str], None]
+
+
+def silent(fraction: float, what: str) -> None:
+    """Show nothing: the progress callback for when nobody waits."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenCorpus:
+    """Everything that is computed once per corpus and cleaning settings; read-only, shared by sessions.
+
+    Attributes
+    ----------
+    description : CorpusDescription
+    phones : PhoneSet
+    recordings : tuple of Recording
+        Cleaned face markers (without the head markers) of every usable recording.
+    skipped : dict of recording id -> sentence
+    model : SelectionModel
+    neutral_mm : (n_markers, 3) mm
+    natural : NaturalDistribution
+        Of peak acceleration, for the percentiles of the join report.
+    lips : LipModel
+        What closure projection needs to know about the speaker's lips.
+    scale_sd : float
+        Spread of the head scale that was removed; 0 when scaling is off.
+    """
+
+    description: CorpusDescription
+    phones: PhoneSet
+    recordings: tuple[Recording, ...]
+    skipped: dict[str, str]
+    model: SelectionModel
+    neutral_mm: FloatArray
+    natural: NaturalDistribution
+    lips: LipModel
+    scale_sd: float
+
+    @property
+    def inventory(self) -> UnitInventory:
+        """The unit inventory of all usable recordings."""
+        return self.model.inventory
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Ids of the usable recordings."""
+        return tuple(r.name for r in self.recordings)
+
+    @property
+    def markers(self) -> tuple[str, ...]:
+        """Names of the face markers."""
+        return self.recordings[0].capture.names
+
+    def recording(self, name: str) -> Recording:
+        """Return a recording by id.
+
+        Raises
+        ------
+        InputError
+            The id is unknown, or the recording was skipped; the sentence says which and why.
+        """
+        for recording in self.recordings:
+            if recording.name == name:
+                return recording
+        if name in self.skipped:
+            raise InputError(f"The recording '{name}' cannot be used: {self.skipped[name]}")
+        if name in self.description.exclude:
+            raise InputError(
+                f"The recording '{name}' is left out by 'exclude' in '{self.description.file}'; "
+                "take it from that list to use it."
+            )
+        hint = suggestion(name, self.names)
+        raise InputError(
+            f"There is no recording '{name}' in '{self.description.folder}'{hint or '.'} "
+            "'corpus-tools check' lists those that are there."
+        )
+
+    def utterance(self, name: str) -> Utterance:
+        """Return what is said in a recording, as a target utterance."""
+        return self.recording(name).utterance
+
+
+def reference_columns(description: CorpusDescription, capture: Capture) -> list[int]:
+    """Return the columns of the rigid markers named by ``reference_markers`` (globs, comma separated)."""
+    patterns = [p.strip() for p in description.reference_markers.split(",") if p.strip()]
+    columns = [i for i, n in enumerate(capture.names) if any(fnmatchcase(n, p) for p in patterns)]
+    if len(columns) < 3:
+        raise CorpusError(
+            f"'reference_markers = \"{description.reference_markers}\"' in "
+            f"'{description.folder / 'corpus.toml'}' matches {len(columns)} of the markers "
+            f"{', '.join(capture.names[:6])}, ...: at least 3 rigid markers are needed to remove head motion."
+        )
+    return columns
+
+
+def face_only(capture: Capture) -> Capture:
+    """Return a capture without the markers of region "head" (jig or forehead: rigid, nothing to animate)."""
+    return chosen_markers(capture, [i for i, region in enumerate(capture.regions) if region != "head"])
+
+
+def _load(
+    description: CorpusDescription, files: Sequence[RecordingFiles], phones: PhoneSet, progress: Progress
+) -> tuple[list[tuple[Capture, Utterance]], dict[str, str]]:
+    loaded, skipped = [], {}
+    for index, item in enumerate(files):
+        progress(index / len(files), f"reading {item.id}")
+        try:
+            capture = load_capture(description, item)
+            labels = load_labels(description, item)
+            utterance = recorded_utterance(
+                item.id,
+                labels,
+                capture.audio,
+                phones,
+                phone_tier=description.phone_tier,
+                word_tier=description.word_tier,
+                duration_s=capture.audio.duration_s if capture.audio else capture.times_s[-1],
+            )
+        except WorkbenchError as error:
+            skipped[item.id] = str(error)
+            continue
+        loaded.append((capture, utterance))
+    return loaded, skipped
+
+
+def _usable(
+    description: CorpusDescription,
+    loaded: list[tuple[Capture, Utterance]],
+    skipped: dict[str, str],
+    silence: str,
+) -> list[tuple[Capture, Utterance]]:
+    """Return the recordings that units can be cut from; the others are entered in `skipped`."""
+    if not loaded:
+        return loaded
+    names = usual_markers(capture for capture, _ in loaded)
+    usual = next(utterance.name for capture, utterance in loaded if capture.names == names)
+    columns = reference_columns(description, next(c for c, _ in loaded if c.names == names))
+    kept = []
+    for capture, utterance in loaded:
+        if capture.names != names:
+            skipped[utterance.name] = f"its markers differ from those of '{usual}'."
+        elif problem := motion_problem(capture, utterance, columns, silence):
+            skipped[utterance.name] = problem
+        else:
+            kept.append((capture, utterance))
+    keep = seen_markers(c for c, _ in kept) if kept else []
+    return [(c if len(keep) == len(c.names) else chosen_markers(c, keep), u) for c, u in kept]
+
+
+@one_thread
+def open_corpus(
+    folder: str | Path, config: ConfigBase | None = None, progress: Progress = silent
+) -> OpenCorpus:
+    """Read, clean and index a corpus.
+
+    Parameters
+    ----------
+    folder : path
+        A folder with ``corpus.toml``; nothing in it or in the folders it points to is altered.
+    config : config, optional
+        Its sections `cleaning`, `selection` and `closure` are used; the defaults when None.
+    progress : callable
+        ``progress(fraction, what)``; may raise to cancel.
+
+    Raises
+    ------
+    CorpusError
+        No corpus there, or no recording in it can be used; the sentence says what was expected.
+    """
+    config = config or Config()
+    description = read_description(folder)
+    phones = phone_set(description.phones)
+    files = [f for f in find_recordings(description) if f.id not in description.exclude]
+    loaded, skipped = _load(description, files, phones, lambda f, w: progress(0.5 * f, w))
+    loaded = _usable(description, loaded, skipped, phones.silence)
+    if not files:
+        raise CorpusError(
+            f"'exclude' in '{description.file}' leaves out every recording; take some from that list."
+        )
+    if not loaded:
+        first = next(iter(skipped.items()))
+        raise CorpusError(
+            f"No recording of '{description.folder}' can be used; the first, '{first[0]}': {first[1]}"
+        )
+    progress(0.5, "cleaning")
+    if "head" in (only := set(loaded[0][0].regions)) and len(only) == 1:
+        raise CorpusError(
+            f"The recordings of '{description.folder}' show head markers only "
+            f"({loaded[0][0].names[0]}, ...); markers on the face are needed too: check their names."
+        )
+    cleaned = clean_captures(
+        [capture for capture, _ in loaded],
+        reference_columns(description, loaded[0][0]),
+        allow_scale=description.head_scale,
+        cutoff_hz=config.cleaning.cutoff_hz,
+        head_cutoff_mm=config.cleaning.head_cutoff_mm,
+        iterations=config.cleaning.head_iterations,
+        names=[utterance.name for _, utterance in loaded],
+        progress=lambda f, w: progress(0.5 + 0.35 * f, w),
+    )
+    recordings = tuple(
+        Recording(utterance, face_only(capture))
+        for capture, (_, utterance) in zip(cleaned.captures, loaded, strict=True)
+    )
+    progress(0.87, "indexing units")
+    return _assemble(description, phones, recordings, skipped, config, cleaned.scale_sd, progress)
+
+
+def _speech_span(recording: Recording, silence: str) -> tuple[float, float]:
+    spoken = [p for p in recording.utterance.phones if p.text != silence]
+    return spoken[0].start_s, spoken[-1].end_s
+
+
+def _silent(recording: Recording, silence: str) -> BoolArray:
+    """Return the measured frames of silence, 0.1 s and more away from speech, (n_frames,)."""
+    capture = recording.capture
+    times = capture.times_s
+    low, high = _speech_span(recording, silence)
+    assert capture.flags is not None
+    measured = (capture.flags & FrameFlag.DOUBTFUL).max(axis=1) == 0
+    return np.asarray(((times < low - 0.1) | (times > high + 0.1)) & measured)
+
+
+def _quiet(recordings: Sequence[Recording], lips: LipModel, silence: str) -> list[BoolArray]:
+    """Return the frames of silence with closed lips of every recording.
+
+    The quarter of all silent frames in which the lips are nearest to each other counts as closed in any case:
+    lips that are pressed in bilabials, or parted at rest, would leave none (our choice).
+    """
+    still = [_silent(r, silence) for r in recordings]
+    aperture = [lip_aperture_mm(r.capture.positions_mm, r.capture.names) for r in recordings]
+    pooled = np.concatenate([a[s] for a, s in zip(aperture, still, strict=True)])
+    if np.isnan(lips.threshold_mm) or not len(pooled):
+        return still
+    limit = max(lips.threshold_mm, float(np.percentile(pooled, 25)))
+    return [np.asarray(s & (a <= limit)) for a, s in zip(aperture, still, strict=True)]
+
+
+def _assemble(
+    description: CorpusDescription,
+    phones: PhoneSet,
+    recordings: tuple[Recording, ...],
+    skipped: dict[str, str],
+    config: ConfigBase,
+    scale_sd: float,
+    progress: Progress,
+) -> OpenCorpus:
+    inventory = build_inventory(recordings)
+    model = prepare_selection(inventory, phones, n_components=config.selection.components)
+    progress(0.95, "natural distribution")
+    captures = [r.capture for r in recordings]
+    columns = [i for i, r in enumerate(captures[0].regions) if r in ("lip_out", "lip_in", "chin")]
+    natural = natural_distribution(
+        captures,
+        rate_hz=config.alignment.rate_hz,
+        columns=columns or None,
+        spans_s=[_speech_span(r, phones.silence) for r in recordings],
+    )
+    lips = lip_model(recordings, phones, config.closure.components)
+    neutral = neutral_pose(captures, _quiet(recordings, lips, phones.silence))
+    progress(1.0, "ready")
+    return OpenCorpus(
+        description=description,
+        phones=phones,
+        recordings=recordings,
+        skipped=skipped,
+        model=model,
+        neutral_mm=neutral,
+        natural=natural,
+        lips=lips,
+        scale_sd=scale_sd,
+    )

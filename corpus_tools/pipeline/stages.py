@@ -1,0 +1,187 @@
+"""The stages of a synthesis, each a plain call: select, align, blend, close; together or one by one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from corpus_tools.config import ConfigBase
+from corpus_tools.core import InputError, Selection, Trajectory, UnitRef, Utterance
+from corpus_tools.fragments import cut_fragment
+from corpus_tools.methods import METHODS
+from corpus_tools.pipeline.closing import close_bilabials
+from corpus_tools.pipeline.head import Animation, Head, animate, vertex_frames
+from corpus_tools.pipeline.opened import OpenCorpus
+from corpus_tools.pipeline.threads import one_thread
+from corpus_tools.pipeline.usable import LEAST_RATE_HZ
+from corpus_tools.synthesis import AlignedPieces, align_fragments, blend_pieces
+
+__all__ = ["Synthesis", "align_units", "blend_units", "select_units", "synthesise"]
+
+CONTEXT_S = 0.4
+"""Motion kept on both sides of a unit: half the longest overlap allowed plus a margin for resampling."""
+
+MOST_BYTES = 2e9
+"""Of the vertices of one synthesis (our choice: about 5 minutes of the bundled head at 120 frames/s)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Synthesis:
+    """A whole result: what was chosen, the marker motion, the motion of the head, and how long it took.
+
+    Attributes
+    ----------
+    utterance : Utterance
+    selection : Selection
+    trajectory : Trajectory
+    animation : Animation
+    vertices_mm : (n_frames, n_vertices, 3) float32, mm
+    timings_ms : dict of stage -> ms
+    """
+
+    utterance: Utterance
+    selection: Selection
+    trajectory: Trajectory
+    animation: Animation
+    vertices_mm: npt.NDArray[np.float32]
+    timings_ms: dict[str, float]
+
+
+@one_thread
+def select_units(
+    corpus: OpenCorpus,
+    utterance: Utterance,
+    config: ConfigBase,
+    exclude: Iterable[str] = (),
+    pins: Iterable[tuple[int, int, UnitRef]] = (),
+    bans: Iterable[UnitRef | str] = (),
+) -> Selection:
+    """Choose the fragments that speak an utterance, by the method of the config.
+
+    Parameters
+    ----------
+    corpus : OpenCorpus
+    utterance : Utterance
+    config : config
+        Section `selection`.
+    exclude : iterable of str
+        Recordings kept out of the inventory: the held-out sentence itself.
+    pins : iterable of (first, last, unit)
+        Units that must speak the target phones `first` to `last`.
+    bans : iterable of UnitRef or recording id
+        Units, or whole recordings, that must not be used.
+
+    Raises
+    ------
+    InputError
+        There is no such method.
+    NoUnitError
+        A diphone is covered by nothing, not even by backoff.
+    """
+    weights = config.selection.model_dump(exclude={"method", "components", "allow_backoff"})
+    method = METHODS[config.selection.method]
+    if config.selection.method == "greedy":
+        weights.pop("prune")
+    return method.search(
+        corpus.model,
+        utterance,
+        exclude=tuple(exclude),
+        pins=tuple(pins),
+        bans=tuple(bans),
+        allow_backoff=config.selection.allow_backoff,
+        **weights,
+    )
+
+
+def _check_rate(rate_hz: float) -> None:
+    if rate_hz < LEAST_RATE_HZ:
+        raise InputError(
+            f"alignment.rate_hz (--fps) is {rate_hz:g}: at least {LEAST_RATE_HZ:g} frames per second are "
+            "needed, or phones fall between the frames."
+        )
+
+
+@one_thread
+def align_units(
+    corpus: OpenCorpus, utterance: Utterance, selection: Selection, config: ConfigBase
+) -> AlignedPieces:
+    """Cut, warp and resample the chosen fragments; g(u) and the overlap do not matter yet."""
+    _check_rate(config.alignment.rate_hz)
+    fragments = [cut_fragment(corpus.inventory, c.unit, context_s=CONTEXT_S) for c in selection.chosen]
+    return align_fragments(
+        selection,
+        utterance,
+        fragments,
+        names=corpus.markers,
+        rate_hz=config.alignment.rate_hz,
+        warp=config.alignment.warp,
+        resampling=config.alignment.resampling,
+        c=config.alignment.shape_c,
+        silence=corpus.phones.silence,
+    )
+
+
+@one_thread
+def blend_units(
+    corpus: OpenCorpus, utterance: Utterance, pieces: AlignedPieces, config: ConfigBase
+) -> Trajectory:
+    """Blend aligned fragments and close the lips: the quick part that a slider of g(u) calls."""
+    blended = blend_pieces(
+        pieces,
+        weighting=config.blend.weighting,
+        shape=config.blend.shape,
+        rule=config.blend.rule,
+        overlap_s=config.blend.overlap_s,
+        fraction=config.blend.fraction,
+        natural=corpus.natural,
+    )
+    if not config.closure.project:
+        return blended
+    return close_bilabials(corpus.lips, blended, utterance, corpus.phones, config.closure.iterations)
+
+
+def _check_size(utterance: Utterance, rate_hz: float, head: Head) -> None:
+    """Refuse before the work what would not fit: all vertices of all frames are held at once."""
+    _check_rate(rate_hz)
+    length_s, per_s = utterance.duration_s, 12.0 * rate_hz * head.mesh.n_vertices
+    if length_s * per_s > MOST_BYTES:
+        raise InputError(
+            f"'{utterance.name}' lasts {length_s:.0f} s with its silences and its sound, which makes "
+            f"{length_s * per_s / 1e9:.0f} GB of vertices on the mesh '{head.mesh.name}'; speak at most "
+            f"{MOST_BYTES / per_s:.0f} s at a time, or lower --fps."
+        )
+
+
+def synthesise(
+    corpus: OpenCorpus,
+    utterance: Utterance,
+    config: ConfigBase,
+    head: Head,
+    exclude: Iterable[str] = (),
+) -> Synthesis:
+    """Run every stage from timed phones to moving vertices (paper A figure 1)."""
+    timings: dict[str, float] = {}
+    clock = time.perf_counter()
+
+    def lap(stage: str) -> None:
+        nonlocal clock
+        now = time.perf_counter()
+        timings[stage], clock = 1000 * (now - clock), now
+
+    _check_size(utterance, config.alignment.rate_hz, head)
+    selection = select_units(corpus, utterance, config, exclude)
+    lap("select")
+    pieces = align_units(corpus, utterance, selection, config)
+    lap("align")
+    trajectory = blend_units(corpus, utterance, pieces, config)
+    lap("blend")
+    animation = animate(head, trajectory)
+    lap("retarget")
+    vertices = vertex_frames(head, animation)
+    lap("deform")
+    timings["total"] = sum(timings.values())
+    return Synthesis(utterance, selection, trajectory, animation, vertices, timings)

@@ -1,0 +1,57 @@
+"""Synthesis of marker motion from captured fragments (paper A section 5)."""
+
+from corpus_tools.synthesis.alignment import TimeWarp, fragment_warp
+from corpus_tools.synthesis.backoff import Pin
+from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
+from corpus_tools.synthesis.blending import blend_pieces, blend_weights, render_selection
+from corpus_tools.synthesis.closure import close_lips, closure_direction
+from corpus_tools.synthesis.greedy import greedy_as_printed, select_greedy
+from corpus_tools.synthesis.joins import (
+    NaturalDistribution,
+    join_gaps,
+    natural_distribution,
+    natural_percentiles,
+    rms_acceleration,
+)
+from corpus_tools.synthesis.model import PhoneClasses, SelectionModel, prepare_selection
+from corpus_tools.synthesis.overlap import overlap_lengths
+from corpus_tools.synthesis.pieces import AlignedPieces, Piece, align_fragments
+from corpus_tools.synthesis.resampling import TimeRbf, fit_time_rbf, fit_uniform_rbf, resample_uniform
+from corpus_tools.synthesis.viterbi import select_viterbi
+from corpus_tools.synthesis.weighting import WEIGHTINGS, weighting
+
+__all__ = [
+    "WEIGHTINGS",
+    "AlignedPieces",
+    "JoinFeatures",
+    "NaturalDistribution",
+    "PhoneClasses",
+    "Piece",
+    "Pin",
+    "PostureBasis",
+    "SelectionModel",
+    "TimeRbf",
+    "TimeWarp",
+    "align_fragments",
+    "blend_pieces",
+    "blend_weights",
+    "close_lips",
+    "closure_direction",
+    "fit_time_rbf",
+    "fit_uniform_rbf",
+    "fragment_warp",
+    "greedy_as_printed",
+    "join_features",
+    "join_gaps",
+    "natural_distribution",
+    "natural_percentiles",
+    "overlap_lengths",
+    "posture_basis",
+    "prepare_selection",
+    "render_selection",
+    "resample_uniform",
+    "rms_acceleration",
+    "select_greedy",
+    "select_viterbi",
+    "weighting",
+]

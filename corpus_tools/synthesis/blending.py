@@ -1,0 +1,150 @@
+"""Blending of aligned fragments into one trajectory (paper A section 5.1.3, eq. (2))."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from corpus_tools.core import FloatArray, Fragment, Selection, Trajectory, Utterance, step
+from corpus_tools.synthesis.alignment import WarpKind
+from corpus_tools.synthesis.joins import NaturalDistribution, join_gaps, natural_percentiles
+from corpus_tools.synthesis.overlap import OverlapRule, overlap_lengths
+from corpus_tools.synthesis.pieces import MARGIN_S, AlignedPieces, Resampling, align_fragments
+from corpus_tools.synthesis.weighting import Weighting
+from corpus_tools.synthesis.weighting import weighting as weighting_function
+
+__all__ = ["blend_pieces", "blend_weights", "render_selection"]
+
+
+def blend_weights(
+    times_s: FloatArray, joins_s: FloatArray, overlaps_s: FloatArray, g: Weighting
+) -> FloatArray:
+    """Return the weight of every piece in every frame, (n_pieces, n_frames); columns sum to 1.
+
+    Eq. (2) of paper A with u = (t - t0) / (t1 - t0) over each overlap; an overlap of length 0 is a cut at the
+    join.
+
+    Parameters
+    ----------
+    times_s : (n_frames,) s
+    joins_s, overlaps_s : (n_joins,) s
+        Centres and lengths of the overlaps; increasing, not meeting.
+    g : callable
+        Weighting function.
+    """
+    fading = np.ones((len(joins_s) + 2, len(times_s)))
+    fading[-1] = 0.0
+    for k, (centre, length) in enumerate(zip(joins_s, overlaps_s, strict=True)):
+        if length > 0:
+            fading[k + 1] = 1.0 - g((times_s - (centre - 0.5 * length)) / length)
+        else:
+            fading[k + 1] = (times_s >= centre).astype(np.float64)
+    return fading[:-1] - fading[1:]
+
+
+def blend_pieces(
+    aligned: AlignedPieces,
+    *,
+    weighting: str = "smootherstep",
+    shape: float = 0.0,
+    rule: OverlapRule = "shared-phone",
+    overlap_s: float = 0.12,
+    fraction: float = 0.5,
+    natural: NaturalDistribution | None = None,
+) -> Trajectory:
+    """Blend aligned pieces at their joins.
+
+    Parameters
+    ----------
+    aligned : AlignedPieces
+    weighting : str
+        g(u) by name.
+    shape : float
+        Its crossover, -1 to 1.
+    rule, overlap_s, fraction
+        As of :func:`~corpus_tools.synthesis.overlap.overlap_lengths`; an overlap is never longer than the
+        motion that aligned pieces keep around their joins (2 :data:`MARGIN_S`).
+    natural : NaturalDistribution, optional
+        Places the peak acceleration of each join among natural ones.
+
+    Returns
+    -------
+    Trajectory
+        With one :class:`~corpus_tools.core.Join` per join.
+
+    Raises
+    ------
+    InputError
+        There is no such g(u), or its shape is out of range.
+    """
+    g = weighting_function(weighting, shape)
+    phones = aligned.utterance.phones.intervals
+    longest = min(overlap_s, 2.0 * MARGIN_S)
+    overlaps = overlap_lengths(phones, aligned.join_phones, rule, longest, fraction)
+    weights = blend_weights(aligned.times_s, aligned.join_times_s, overlaps, g)
+    n_frames, n_markers = len(aligned.times_s), len(aligned.names)
+    values = np.zeros((n_frames, n_markers, 3))
+    flags = np.zeros((n_frames, n_markers), np.uint8)
+    for piece, weight in zip(aligned.pieces, weights, strict=True):
+        span = slice(piece.start, piece.stop)
+        share = weight[span]
+        values[span] += share[:, None, None] * piece.motion_mm
+        flags[span] |= np.where(share[:, None] > 0, piece.flags, 0).astype(np.uint8)
+    done = step("blend", weighting=weighting, shape=shape, rule=rule, overlap_s=overlap_s, fraction=fraction)
+    joins = join_gaps(aligned, overlaps)
+    result = Trajectory(
+        aligned.times_s, values, aligned.names, joins, flags, (step("align", **dict(aligned.settings)), done)
+    )
+    if natural is None or not joins:
+        return result
+    percentiles = natural_percentiles(result, natural)
+    ranked = tuple(replace(j, natural_percentile=p) for j, p in zip(joins, percentiles, strict=True))
+    return replace(result, joins=ranked)
+
+
+def render_selection(
+    selection: Selection,
+    utterance: Utterance,
+    fragments: Sequence[Fragment],
+    *,
+    names: Sequence[str],
+    rate_hz: float = 120.0,
+    weighting: str = "smootherstep",
+    shape: float = 0.0,
+    rule: OverlapRule = "shared-phone",
+    overlap_s: float = 0.12,
+    fraction: float = 0.5,
+    warp: WarpKind = "linear",
+    resampling: Resampling = "inverse",
+    c: float = 0.2,
+    silence: str = "SIL",
+    natural: NaturalDistribution | None = None,
+) -> Trajectory:
+    """Align, resample and blend in one call (paper A sections 5.1.2 and 5.1.3).
+
+    For a change of g(u) or of the overlap alone, keep the result of
+    :func:`~corpus_tools.synthesis.pieces.align_fragments` and call :func:`blend_pieces` again: the
+    parameters are theirs.
+    """
+    aligned = align_fragments(
+        selection,
+        utterance,
+        fragments,
+        names=names,
+        rate_hz=rate_hz,
+        warp=warp,
+        resampling=resampling,
+        c=c,
+        silence=silence,
+    )
+    return blend_pieces(
+        aligned,
+        weighting=weighting,
+        shape=shape,
+        rule=rule,
+        overlap_s=overlap_s,
+        fraction=fraction,
+        natural=natural,
+    )

@@ -1,0 +1,139 @@
+"""An inventory prepared for selection: everything about it that does not depend on the target."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from corpus_tools.core import FloatArray, FrameFlag, IntArray, UnitInventory, frozen
+from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
+
+__all__ = ["SHORTEST_S", "PhoneClasses", "SelectionModel", "prepare_selection"]
+
+SHORTEST_S = 0.02
+"""Shorter phones count as this long: below it, a label says more about the labeller than about time."""
+
+
+class PhoneClasses(Protocol):
+    """What selection needs to know of a phone set."""
+
+    @property
+    def silence(self) -> str:
+        """The phone that stands for silence."""
+
+    def viseme_class(self, phone: str) -> str:
+        """Return the name of the viseme class of a phone."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SelectionModel:
+    """An inventory with everything about it that does not depend on the target; made once, read-only.
+
+    Attributes
+    ----------
+    inventory : UnitInventory
+    phones : PhoneClasses
+    basis : PostureBasis
+    joins : JoinFeatures
+    classes : (n_codes + 1,) int64
+        Viseme class of each code; the last entry is that of silence, which stands beyond both ends.
+    class_names : tuple of str
+    log_durations : (n_phones,) float64
+        log of the duration in s.
+    left, right : (n_phones,) int64
+        Code before row r, and code after row r + 1; the code beyond an end is n_codes.
+    flagged : (n_phones,) float64
+        Share of the marker samples of diphone r that were filled or are doubtful.
+    """
+
+    inventory: UnitInventory
+    phones: PhoneClasses
+    basis: PostureBasis
+    joins: JoinFeatures
+    classes: IntArray
+    class_names: tuple[str, ...]
+    log_durations: FloatArray
+    left: IntArray
+    right: IntArray
+    flagged: FloatArray
+
+    def __post_init__(self) -> None:
+        for key in ("classes", "left", "right"):
+            object.__setattr__(self, key, frozen(getattr(self, key), np.int64))
+        for key in ("log_durations", "flagged"):
+            object.__setattr__(self, key, frozen(getattr(self, key)))
+
+
+def prepare_selection(
+    inventory: UnitInventory,
+    phone_set: PhoneClasses,
+    n_components: int = 12,
+    markers: Sequence[str] | None = None,
+) -> SelectionModel:
+    """Compute once what both searches need of an inventory.
+
+    Parameters
+    ----------
+    inventory : UnitInventory
+    phone_set : PhoneClasses
+        A phone set: its silence and its viseme classes.
+    n_components : int
+        Principal components of the join distance.
+    markers : sequence of str, optional
+        Markers of the join distance; all outside region "head" when not given.
+
+    Raises
+    ------
+    LabelError
+        A phone of the inventory is not in the phone set.
+    MotionError, CorpusError
+        The captures have not been cleaned.
+    """
+    basis = posture_basis(inventory, markers, n_components)
+    names = [phone_set.viseme_class(p) for p in (*inventory.phone_set, phone_set.silence)]
+    class_names = tuple(dict.fromkeys(names))
+    left, right = _neighbours(inventory)
+    return SelectionModel(
+        inventory=inventory,
+        phones=phone_set,
+        basis=basis,
+        joins=join_features(inventory, basis),
+        classes=np.array([class_names.index(n) for n in names]),
+        class_names=class_names,
+        log_durations=np.log(np.maximum(inventory.ends_s - inventory.starts_s, SHORTEST_S)),
+        left=left,
+        right=right,
+        flagged=_flagged_share(inventory),
+    )
+
+
+def _neighbours(inventory: UnitInventory) -> tuple[IntArray, IntArray]:
+    n_codes = len(inventory.phone_set)
+    codes = inventory.codes.astype(np.int64)
+    follows = inventory.keys >= 0
+    left = np.full(len(codes), n_codes)
+    left[1:] = np.where(follows[:-1], codes[:-1], n_codes)
+    right = np.full(len(codes), n_codes)
+    right[:-2] = np.where(follows[:-2] & follows[1:-1], codes[2:], n_codes)
+    return left, right
+
+
+def _flagged_share(inventory: UnitInventory) -> FloatArray:
+    """Share of flagged samples from the centre of each phone to that of the next; 0 where no frame lies."""
+    centres = 0.5 * (inventory.starts_s + inventory.ends_s)
+    share = np.zeros(inventory.n_phones)
+    bad = np.uint8(FrameFlag.FILLED | FrameFlag.DOUBTFUL)
+    for index, recording in enumerate(inventory.recordings):
+        flags = recording.capture.flags
+        assert flags is not None
+        if not (flags & bad).any():
+            continue
+        rows = slice(int(inventory.offsets[index]), int(inventory.offsets[index + 1]))
+        sums = np.concatenate([[0.0], np.cumsum(((flags & bad) > 0).mean(axis=1))])
+        edges = np.searchsorted(recording.capture.times_s, centres[rows])
+        frames = np.diff(edges)
+        share[rows][:-1] = (sums[edges[1:]] - sums[edges[:-1]]) / np.maximum(frames, 1)
+    return share

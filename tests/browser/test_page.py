@@ -1,0 +1,214 @@
+"""The first page in a real browser: a sentence moves the head, g(u) moves pixels, tabs are independent."""
+
+import re
+
+import pytest
+
+from corpus_tools.config import load_config
+from corpus_tools.demo import simulate_corpus
+from workbench.apps.serving import Options, Workbench, free_port
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("page")
+    simulate_corpus(folder / "corpus", n_sentences=12)
+    workbench = Workbench(Options(corpus=folder / "corpus", root=folder, browser=False))
+    port = free_port()
+    server = workbench.serve(port=port, threaded=True)
+    yield f"http://127.0.0.1:{port}/", workbench, folder
+    for page in list(workbench.pages):
+        page.close()
+    server.stop()
+
+
+def lane(tab):
+    return tab.locator(".vsw-lane canvas")
+
+
+def drawn(tab, served):
+    """Open the page; return its session once lane and head show the first sentence."""
+    url, workbench, _ = served
+    before = set(workbench.pages)
+    tab.goto(url)
+    lane(tab).wait_for(timeout=30_000)
+    (page,) = set(workbench.pages) - before
+    session = page.session
+    settled(tab, session)
+    until(tab, lambda: lane(tab).evaluate("c => (c.vsw.state.score?.fragments.length ?? 0) > 0"))
+    return session
+
+
+def until(tab, condition, timeout_ms=30_000):
+    waited = 0
+    while not condition():
+        assert waited < timeout_ms, "the page did not get there"
+        tab.wait_for_timeout(25)
+        waited += 25
+
+
+def settled(tab, session):
+    """Wait until what is shown is what the settings say."""
+
+    def shown():
+        result, request = session.result, session.request()
+        if result is None or session.working:
+            return False
+        return result.request.same_target(request) and result.request.config == request.config
+
+    until(tab, shown)
+
+
+def pixels(tab, part):
+    return tab.locator(part).first.screenshot()
+
+
+def changed(tab, part, before, timeout_ms=10_000):
+    """Wait until a part of the page looks different."""
+    waited = 0
+    while pixels(tab, part) == before:
+        assert waited < timeout_ms, f"{part} did not change"
+        tab.wait_for_timeout(50)
+        waited += 50
+
+
+def drag(tab, label, share):
+    """Drag a slider with the mouse to `share` of its length."""
+    box = tab.get_by_role("slider", name=re.compile(label)).locator("xpath=../..").bounding_box()
+    y = box["y"] + box["height"] / 2
+    tab.mouse.move(box["x"] + 0.5 * box["width"], y)
+    tab.mouse.down()
+    for step in range(1, 9):
+        tab.mouse.move(box["x"] + (0.5 + (share - 0.5) * step / 8) * box["width"], y)
+    tab.mouse.up()
+
+
+def seek_to_join(tab):
+    """Put the clock a little before the first join, where g(u) matters."""
+    box = lane(tab).bounding_box()
+    x = lane(tab).evaluate("c => c.vsw.toX(c.vsw.state.joins[0].time - 0.01)")
+    tab.mouse.click(box["x"] + x, box["y"] + 200)
+
+
+def test_g_of_u_moves_pixels_of_lane_and_head(browser_page, served):
+    session = drawn(browser_page, served)
+    seek_to_join(browser_page)
+    browser_page.wait_for_timeout(300)
+    head, lane_before = pixels(browser_page, ".slot.face"), pixels(browser_page, ".vsw-lane")
+    drag(browser_page, "Crossover", 0.95)
+    until(browser_page, lambda: session.shape > 0.5)
+    changed(browser_page, ".vsw-lane", lane_before)
+    changed(browser_page, ".slot.face", head)
+
+
+def test_a_click_and_a_key_select_a_fragment(browser_page, served):
+    session = drawn(browser_page, served)
+    box = lane(browser_page).bounding_box()
+    middle = "c => { const f = c.vsw.state.score.fragments[1]; return c.vsw.toX((f.start + f.end) / 2) }"
+    browser_page.mouse.click(box["x"] + lane(browser_page).evaluate(middle), box["y"] + 80)
+    browser_page.get_by_text(re.compile("^Fragment 2 of")).wait_for()
+    assert session.selected == 1
+    browser_page.keyboard.press("j")
+    browser_page.get_by_text(re.compile("^Fragment 1 of")).wait_for()
+    chosen = browser_page.get_by_role("option", selected=True)
+    assert chosen.inner_text().startswith("1: ")
+
+
+def test_next_sentence_and_presets_by_key(browser_page, served):
+    session = drawn(browser_page, served)
+    first = session.sentence
+    browser_page.keyboard.press("]")
+    until(browser_page, lambda: session.sentence != first)
+    settled(browser_page, session)
+    browser_page.locator(".chip", has_text=session.sentence).wait_for()
+    browser_page.keyboard.press("1")
+    browser_page.locator("button.Mui-selected", has_text="Linear").wait_for()
+    assert session.weighting == "linear"
+
+
+def test_space_plays_and_every_cursor_moves(browser_page, served):
+    drawn(browser_page, served)
+    browser_page.keyboard.press("Space")
+    clock = browser_page.locator(".vsw-transport .now")
+    until(browser_page, lambda: float(clock.inner_text()) > 0.2)
+    browser_page.keyboard.press("Space")
+    browser_page.get_by_role("button", name="Play (Space)").wait_for()
+    x = browser_page.locator(".vsw-lane-cursor").evaluate("e => new DOMMatrix(e.style.transform).m41")
+    expected = lane(browser_page).evaluate(f"c => c.vsw.toX({clock.inner_text()})")
+    assert abs(x - expected) < 1.0
+
+
+def test_two_tabs_do_not_affect_each_other(browser_page, served):
+    one = drawn(browser_page, served)
+    other_tab = browser_page.context.new_page()
+    two = drawn(other_tab, served)
+    assert one is not two
+    assert one.corpus is two.corpus
+    kept, before = one.result, pixels(browser_page, ".vsw-lane")
+    other_tab.keyboard.press("]")
+    until(other_tab, lambda: two.sentence != one.sentence)
+    drag(other_tab, "Longest overlap", 0.1)
+    until(other_tab, lambda: two.overlap_s < 0.1)
+    settled(other_tab, two)
+    other_tab.keyboard.press("t")
+    other_tab.locator('.vsw-shell[data-theme="dark"]').wait_for()
+    assert one.result is kept
+    assert (one.theme, one.overlap_s) == ("light", 0.12)
+    assert pixels(browser_page, ".vsw-lane") == before
+
+
+def test_export_equals_what_the_page_shows(browser_page, served):
+    session = drawn(browser_page, served)
+    drag(browser_page, "Crossover", 0.2)
+    until(browser_page, lambda: session.shape < -0.3)
+    target = served[2] / "exported.toml"
+    browser_page.get_by_label("Config file").fill(str(target))
+    browser_page.get_by_role("button", name="Export config").click()
+    browser_page.get_by_text("Config written").wait_for()
+    assert load_config(target).values() == session.config.values()
+    assert load_config(target).blend.shape == session.shape
+    line = browser_page.get_by_label("Command that replays it").input_value()
+    assert line.startswith("corpus-tools synth ")
+    assert str(target) in line
+
+
+def test_theme_changes_the_page_and_keeps_its_layout(browser_page, served):
+    drawn(browser_page, served)
+    shell = browser_page.locator(".vsw-shell")
+    parts = (".rail", ".transport", ".work", ".status", ".vsw-transport .clock")
+    places = [browser_page.locator(p).first.bounding_box() for p in parts]
+    light = shell.evaluate("e => getComputedStyle(e).backgroundColor")
+    browser_page.keyboard.press("t")
+    browser_page.locator('.vsw-shell[data-theme="dark"]').wait_for()
+    assert shell.evaluate("e => getComputedStyle(e).backgroundColor") != light
+    assert places == [browser_page.locator(p).first.bounding_box() for p in parts]
+
+
+@pytest.mark.parametrize("width", [1280, 1440, 1920])
+def test_the_frame_keeps_its_sizes_and_nothing_is_clipped(browser_page, served, width):
+    browser_page.set_viewport_size({"width": width, "height": 900})
+    drawn(browser_page, served)
+    parts = (".rail", ".bar", ".transport", ".inspector", ".status")
+    boxes = {p: browser_page.locator(p).first.bounding_box() for p in parts}
+    assert boxes[".rail"]["width"] == 64
+    assert (boxes[".bar"]["y"], boxes[".bar"]["height"]) == (0, 40)
+    assert (boxes[".transport"]["y"], boxes[".transport"]["height"]) == (40, 48)
+    assert boxes[".inspector"]["width"] == (288 if width > 1360 else 256)
+    assert boxes[".inspector"]["x"] + boxes[".inspector"]["width"] == width
+    assert boxes[".status"]["y"] + boxes[".status"]["height"] == 900
+    foot = browser_page.locator(".inspector > .foot").bounding_box()
+    button = browser_page.get_by_role("button", name="Export config").bounding_box()
+    assert button["y"] + button["height"] <= foot["y"] + foot["height"] <= 876
+    for header in browser_page.locator(".card > header:visible").all():
+        assert header.evaluate("e => e.scrollWidth <= e.clientWidth")
+
+
+def test_a_wrong_folder_is_said_where_it_was_typed(browser_page, served):
+    drawn(browser_page, served)
+    browser_page.get_by_role("button", name="Corpus", exact=True).click()
+    field = browser_page.get_by_label("Folder of the corpus")
+    field.fill(str(served[2] / "nothing"))
+    field.press("Enter")
+    browser_page.locator(".start .notice.err", has_text="corpus.toml").wait_for()
+    browser_page.get_by_role("button", name="Back to the open corpus").click()
+    lane(browser_page).wait_for()

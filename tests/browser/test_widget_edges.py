@@ -1,0 +1,53 @@
+"""Smooth edges: drawn quickly while something moves where the processor draws, smooth when it rests."""
+
+import numpy as np
+import pyvista as pv
+from browser.shown import FIND, GROUND, SIZE, Shown
+
+from workbench.views.mesh_view import MeshView
+from workbench.views.scene_actors import surface_actor
+
+MIXED = f"""(draw) => {{
+  const v = {FIND}.vsw;
+  draw(v);
+  const p = v.scene.pixels();
+  let mixed = 0;
+  for (let i = 0; i < p.length; i += 4) mixed += p[i] > 20 && p[i] < 235;
+  return mixed;
+}}"""
+
+
+def square():
+    view = MeshView(ground=GROUND, **SIZE)
+    surface = pv.Plane(i_size=3, j_size=3).rotate_z(17)
+    view.show_actors([surface_actor("square", surface, color="white", ambient=1.0, diffuse=0.0)])
+    return view
+
+
+def test_a_picture_at_rest_has_smooth_edges_and_a_moving_one_is_quick(serve, browser_page):
+    shown = Shown(serve, browser_page, square)
+    assert shown.get("v.scene.slow")  # the browser of these tests draws with the processor
+    mixed = {how: shown.tab.evaluate(f"() => ({MIXED})((v) => v.draw({how}))") for how in ("true", "false")}
+    assert mixed["true"] > 200
+    assert mixed["false"] == 0
+
+    shown.get("v.draw(false)")
+    draws = shown.get("v.draws")
+    shown.until("v.draws > a", draws)
+    shown.tab.wait_for_timeout(400)
+    assert shown.get("v.draws") == draws + 1  # once, not again and again
+    picture = np.frombuffer(shown.tab.locator("canvas[role=img]").screenshot(), np.uint8)
+    shown.get("v.draw(true)")
+    again = np.frombuffer(shown.tab.locator("canvas[role=img]").screenshot(), np.uint8)
+    np.testing.assert_array_equal(picture, again)
+
+
+def test_another_size_has_smooth_edges_too(serve, browser_page):
+    shown = Shown(serve, browser_page, square)
+    small = shown.pixels()
+    shown.call(lambda: shown.view.param.update(width=600, height=500))
+    shown.until("v.canvas.width === 600 && v.canvas.height === 500")
+    large = shown.pixels()
+    assert large.shape == (500, 600, 3)
+    share = [np.mean(p[..., 0] > 128) for p in (small, large)]
+    assert abs(share[1] - share[0] * (500 / 600) / (380 / 420)) < 0.01

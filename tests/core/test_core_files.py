@@ -1,0 +1,60 @@
+"""Files and folders appear whole or not at all."""
+
+import pytest
+
+from corpus_tools.core import OutputError, atomic_file, atomic_folder, check_writable
+
+
+class BoomError(Exception):
+    pass
+
+
+def test_a_file_appears_only_when_complete(tmp_path):
+    path = tmp_path / "below" / "a.txt"
+    with atomic_file(path) as temporary:
+        temporary.write_text("new")
+        assert not path.exists()
+    assert path.read_text() == "new"
+    with pytest.raises(BoomError), atomic_file(path) as temporary:
+        temporary.write_text("half")
+        raise BoomError
+    assert path.read_text() == "new"
+    assert [p.name for p in path.parent.iterdir()] == ["a.txt"]
+
+
+@pytest.mark.parametrize("error", [BoomError, KeyboardInterrupt])
+def test_a_folder_appears_only_when_complete(tmp_path, error):
+    folder = tmp_path / "out"
+    with pytest.raises(error), atomic_folder(folder) as temporary:
+        (temporary / "half.npz").write_text("x")
+        raise error
+    assert not list(tmp_path.iterdir())
+    with atomic_folder(folder) as temporary:
+        (temporary / "whole.npz").write_text("y")
+    assert [p.name for p in folder.iterdir()] == ["whole.npz"]
+
+
+def test_an_existing_folder_keeps_its_other_files(tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("mine")
+    (folder / "a").write_text("old")
+    with atomic_folder(folder) as temporary:
+        (temporary / "a").write_text("new")
+    assert (folder / "notes.txt").read_text() == "mine"
+    assert (folder / "a").read_text() == "new"
+
+
+@pytest.mark.parametrize("place", ["file", "file/below", "/proc/nowhere"])
+def test_unwritable_places_are_named(tmp_path, place):
+    (tmp_path / "file").write_text("x")
+    target = tmp_path / place if not place.startswith("/") else place
+    with pytest.raises(OutputError) as caught, atomic_folder(target):
+        pass
+    assert str(target) in str(caught.value)
+    assert (tmp_path / "file").read_text() == "x"
+
+
+def test_check_writable_leaves_nothing(tmp_path):
+    check_writable(tmp_path / "a" / "b")
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,94 @@
+"""Pictures of the head: something is drawn, parts have their colours, lips open where they should."""
+
+import io
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+from corpus_tools.core import Mesh
+from corpus_tools.mesh import bundled_head, bundled_morph_mm
+from corpus_tools.render import VIEWS, part_surface, probe_offscreen, scene, snapshot
+
+
+@pytest.fixture(scope="module")
+def head():
+    return bundled_head()
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _can_draw():
+    status = probe_offscreen()
+    if not status.ok:
+        pytest.skip(status.reason)
+
+
+def picture(png):
+    return np.asarray(Image.open(io.BytesIO(png))).astype(int)
+
+
+@pytest.mark.parametrize("view", list(VIEWS))
+def test_every_view_shows_a_face_on_a_plain_ground(head, view):
+    image = picture(snapshot(head, view=view, size=(160, 200)))
+    assert image.shape == (200, 160, 3)
+    ground = image[0, 0]
+    covered = (np.abs(image - ground).sum(axis=2) > 30).mean()
+    assert 0.3 < covered < 0.98
+
+
+def test_front_view_is_symmetric_in_outline(head):
+    image = picture(snapshot(head, size=(200, 220)))
+    covered = np.abs(image - image[0, 0]).sum(axis=2) > 30
+    assert (covered != covered[:, ::-1]).mean() < 0.02
+
+
+def test_open_mouth_shows_teeth_and_dark_that_the_closed_one_hides(head):
+    opened = head.vertices_mm + 0.25 * bundled_morph_mm("jawOpen")
+    closed = picture(snapshot(head, zoom_mm=60.0, size=(200, 200)))
+    wide = picture(snapshot(head, opened, zoom_mm=60.0, size=(200, 200)))
+
+    def bright_and_dark(image):
+        middle = image[60:160, 40:160]
+        white = (np.ptp(middle, axis=2) < 25) & (middle.max(axis=2) > 120)
+        return white.sum(), (middle.max(axis=2) < 60).sum()
+
+    assert bright_and_dark(closed)[0] < 10
+    assert bright_and_dark(wide)[0] > 100
+    assert bright_and_dark(wide)[1] > bright_and_dark(closed)[1] + 50
+
+
+def test_scene_has_one_actor_a_part_and_dots_on_request(head):
+    plotter = scene(head, markers=True, size=(60, 60))
+    try:
+        assert isinstance(plotter, pv.Plotter)
+        assert set(plotter.actors) == {*head.part_names, "markers"}
+    finally:
+        plotter.close()
+
+
+def test_camera_does_not_follow_the_motion(head):
+    cameras = []
+    for shift in (0.0, 20.0):
+        plotter = scene(head, head.vertices_mm + shift, size=(60, 60))
+        cameras.append((tuple(plotter.camera.position), tuple(plotter.camera.focal_point)))
+        plotter.close()
+    assert cameras[0] == cameras[1]
+
+
+def test_surfaces_keep_the_vertex_numbers_of_the_mesh(head):
+    seen = []
+    for part in head.part_names:
+        surface = part_surface(head, part)
+        vertex = surface.point_data["vertex"]
+        np.testing.assert_allclose(surface.points, head.vertices_mm[vertex], atol=1e-3)
+        seen.append(vertex)
+    assert sorted(np.concatenate(seen).tolist()) == list(range(head.n_vertices))
+
+
+def test_a_plain_mesh_without_markers_is_drawn_too():
+    ball = pv.Sphere(radius=50.0)
+    faces = ball.regular_faces
+    mesh = Mesh("ball", np.asarray(ball.points, float), faces, np.zeros(ball.n_points, np.int8))
+    image = picture(snapshot(mesh, size=(100, 100)))
+    assert 0.2 < (np.abs(image - image[0, 0]).sum(axis=2) > 30).mean() < 0.9

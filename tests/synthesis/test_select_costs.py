@@ -1,0 +1,175 @@
+import math
+
+import numpy as np
+import pytest
+
+from corpus_tools.core import InputError, LabelError, NoUnitError, Recording, UnitRef
+from corpus_tools.fragments import build_inventory
+from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
+from corpus_tools.synthesis.costs import TARGET_TERMS, prepare_target, span_costs
+from tests.strategies.inventories import SmallPhoneSet, capture, recording, simulated_recordings, utterance
+
+SEARCHES = [select_greedy, select_viterbi]
+
+
+def model_of(*recordings):
+    return prepare_selection(build_inventory(recordings), SmallPhoneSet(), n_components=4)
+
+
+def costs_of(search, model, target, **keywords):
+    (chosen,) = search(model, target, **keywords).chosen
+    return dict(chosen.costs.target)
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_timing_is_the_log_ratio_of_both_phones_of_every_diphone_without_silence(search):
+    model = model_of(recording("a", ["SIL", "P", "A", "SIL"], [0.5, 0.1, 0.2, 0.5]))
+    target = utterance("t", ["SIL", "P", "A", "SIL"], [0.1, 0.2, 0.1, 2.0])
+    assert costs_of(search, model, target)["timing"] == pytest.approx(4 * math.log(2))
+    assert costs_of(search, model, target, duration=0.5)["timing"] == pytest.approx(2 * math.log(2))
+
+
+@pytest.mark.parametrize(("neighbour", "cost"), [("T", 0.0), ("D", 0.5), ("O", 1.0), ("SIL", 1.0)])
+def test_context_is_nothing_half_or_whole_on_each_side(neighbour, cost):
+    model = model_of(recording("a", ["SIL", neighbour, "P", "A", neighbour, "SIL"]))
+    target = utterance("t", ["SIL", "T", "P", "A", "T", "SIL"])
+    terms = span_costs(model, prepare_target(model, target, context=1.0), 2, np.array([2]))
+    assert dict(zip(TARGET_TERMS, terms[0], strict=True))["context"] == pytest.approx(2 * cost)
+
+
+def test_context_beyond_the_ends_is_silence():
+    model = model_of(recording("a", ["T", "P", "A", "T"]), recording("b", ["P", "A"]))
+    (chosen,) = select_greedy(model, utterance("t", ["P", "A"])).chosen
+    assert chosen.unit == UnitRef("b", 0, 1)
+    assert dict(chosen.costs.target)["context"] == 0.0
+    assert dict(chosen.rejected[0].costs.target)["context"] == pytest.approx(0.3 * 2)
+
+
+def test_a_phone_of_the_same_class_costs_the_weight_and_any_other_twice_that():
+    target = utterance("t", ["SIL", "P", "SIL"])
+    alike = costs_of(select_viterbi, model_of(recording("a", ["SIL", "B", "SIL"])), target)
+    assert alike["backoff"] == pytest.approx(2.0)
+    other = costs_of(select_viterbi, model_of(recording("a", ["SIL", "A", "SIL"])), target, backoff=1.0)
+    assert other["backoff"] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_backoff_goes_from_the_nearest_phones_to_the_farthest(search):
+    steps = {
+        "exact": ["SIL", "P", "A", "SIL"],
+        "one by class": ["SIL", "B", "A", "SIL"],
+        "both by class": ["SIL", "B", "O", "SIL"],
+        "one free": ["SIL", "T", "A", "SIL"],
+        "one by class, one free": ["SIL", "T", "O", "SIL"],
+    }
+    target = utterance("t", ["P", "A"])
+    left = {name: recording(name, phones) for name, phones in steps.items()}
+    for nearest in steps:
+        (chosen,) = search(model_of(*left.values()), target).chosen
+        assert chosen.unit.recording == nearest
+        del left[nearest]
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_where_nothing_stands_in_all_missing_diphones_are_named(search):
+    model = model_of(recording("a", ["SIL", "P", "SIL"]))
+    with pytest.raises(NoUnitError, match="T-A, A-T, not even by viseme class") as error:
+        search(model, utterance("t", ["SIL", "P", "SIL", "T", "A", "T", "SIL"]))
+    assert error.value.diphones == (("T", "A"), ("A", "T"))
+    with pytest.raises(NoUnitError, match="allow backoff to viseme classes"):
+        search(model, utterance("t", ["SIL", "T", "SIL"]), allow_backoff=False)
+
+
+def test_filled_frames_inside_a_unit_cost_by_their_share_and_are_avoided():
+    phones, durations = ["SIL", "P", "A", "SIL"], [0.11] * 4
+    spoken = utterance("a", phones, durations)
+    first_diphone_and_half_of_the_last = [(6, 16), (28, 32)]  # centres at 0.055, 0.165, 0.275 and 0.385 s
+    flawed = capture(spoken, np.random.default_rng(1), filled=first_diphone_and_half_of_the_last)
+    filled, clean = Recording(spoken, flawed), recording("b", phones, durations)
+    target = utterance("t", phones, durations)
+    alone = costs_of(select_greedy, model_of(filled), target, flagged=2.0)
+    assert alone["flagged"] == pytest.approx(2.0 * (1 + 5 / 11))
+    (chosen,) = select_greedy(model_of(filled, clean), target).chosen
+    assert chosen.unit.recording == "b"
+
+
+def test_a_join_costs_the_distance_of_postures_and_velocities_at_the_shared_phone():
+    model = model_of(recording("a", ["SIL", "P", "A", "SIL"]), recording("b", ["SIL", "T", "A", "P", "SIL"]))
+    target = utterance("t", ["SIL", "P", "A", "P", "SIL"])
+    first, second = select_greedy(model, target, join=2.0, velocity=0.5, per_join=0.25).chosen
+    left = model.inventory.rows(first.unit)[1]
+    right = model.inventory.rows(second.unit)[0]
+    joins = model.joins
+    assert dict(second.costs.join) == pytest.approx(
+        {
+            "position": 2.0 * np.linalg.norm(joins.position[left] - joins.position[right]),
+            "velocity": 2.0 * 0.5 * np.linalg.norm(joins.velocity[left] - joins.velocity[right]),
+            "each": 0.25,
+        }
+    )
+    assert first.costs.join == ()
+
+
+def test_alternatives_that_speak_less_than_the_span_speak_its_beginning():
+    model = model_of(
+        recording("a", ["SIL", "P", "A", "T", "SIL"]), recording("b", ["SIL", "P", "A", "D", "SIL"])
+    )
+    (chosen,) = select_greedy(model, utterance("t", ["SIL", "P", "A", "T", "SIL"])).chosen
+    assert chosen.unit == UnitRef("a", 0, 4)
+    assert [r.unit for r in chosen.rejected] == [UnitRef("b", 0, 2)]
+
+
+def test_equals_are_decided_by_name_then_place():
+    same = [["SIL", "P", "A", "P", "A", "SIL"]] * 2
+    b, a = (Recording(s, capture(s, np.random.default_rng(3))) for s in map(utterance, ["b", "a"], same))
+    for search in SEARCHES:
+        (chosen,) = search(model_of(b, a), utterance("t", ["P", "A"]), context=0.0).chosen
+        assert chosen.unit == UnitRef("a", 1, 2)
+
+
+def pin_error(pins, **keywords):
+    model = model_of(recording("a", ["SIL", "P", "A", "SIL"]))
+    with pytest.raises(InputError) as error:
+        select_viterbi(model, utterance("t", ["SIL", "P", "A", "SIL"]), pins=pins, **keywords)
+    return str(error.value)
+
+
+def test_pins_and_bans_that_do_not_fit_are_refused():
+    assert "equally long" in pin_error([(0, 2, UnitRef("a", 0, 1))])
+    assert "equally long" in pin_error([(3, 4, UnitRef("a", 0, 1))])
+    assert "no run of at least two phones" in pin_error([(0, 1, UnitRef("a", 3, 4))])
+    assert "Two pins speak target phones 1 and 2" in pin_error(
+        [(0, 2, UnitRef("a", 0, 2)), (1, 2, UnitRef("a", 1, 2))]
+    )
+    assert "held out" in pin_error([(0, 1, UnitRef("a", 0, 1))], exclude=["a"])
+    assert "'aa'" in pin_error([], bans=["aa"])
+    assert "The ban 'a:2-2'" in pin_error([], bans=[UnitRef("a", 2, 2)])
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_a_pin_covers_what_nothing_else_covers(search):
+    model = model_of(recording("a", ["SIL", "P", "A", "SIL"]))
+    target = utterance("t", ["SIL", "T", "A", "SIL"])
+    pins = [(0, 3, UnitRef("a", 0, 3))]
+    (chosen,) = search(model, target, pins=pins, allow_backoff=False).chosen
+    assert chosen.backoff == ((1, "T", "P"),)
+
+
+def test_bad_targets_and_weights_are_refused():
+    model = model_of(recording("a", ["SIL", "P", "SIL"]))
+    with pytest.raises(InputError, match="at least two"):
+        select_greedy(model, utterance("t", ["SIL"]))
+    with pytest.raises(InputError, match="'join' is -1"):
+        select_viterbi(model, utterance("t", ["SIL", "P"]), join=-1)
+    with pytest.raises(InputError, match="'prune' is 0"):
+        select_viterbi(model, utterance("t", ["SIL", "P"]), prune=0)
+    with pytest.raises(LabelError, match="'XX'"):
+        select_viterbi(model, utterance("t", ["SIL", "XX"]))
+
+
+def test_settings_are_kept_with_the_selection():
+    model = model_of(*simulated_recordings(6, 2))
+    selection = select_viterbi(model, model.inventory.recordings[0].utterance, prune=7, context=0.6)
+    settings = dict(selection.settings)
+    assert (settings["prune"], settings["context"], settings["allow_backoff"]) == (7, 0.6, True)
+    assert selection.method == "viterbi"

@@ -1,0 +1,65 @@
+"""Export: only configs are replaced, nothing leaves the root, the line can be pasted."""
+
+import shlex
+
+import pytest
+
+from corpus_tools.config import load_config
+from corpus_tools.core import InputError, OutputError
+from workbench.actions import export_config, inside_root, replay_command, suggested_path
+from workbench.state import Session
+
+
+def test_a_foreign_file_is_not_overwritten(tmp_path):
+    notes = tmp_path / "notes.toml"
+    notes.write_text("mine = true\n")
+    with pytest.raises(OutputError, match="nothing was overwritten"):
+        export_config(Session(), notes)
+    assert notes.read_text() == "mine = true\n"
+
+
+def test_a_config_is_replaced(tmp_path):
+    path, _ = export_config(Session(weighting="linear"), tmp_path / "a.toml")
+    export_config(Session(weighting="septic"), path)
+    assert load_config(path).blend.weighting == "septic"
+    assert [p.name for p in tmp_path.iterdir()] == ["a.toml"]
+
+
+@pytest.mark.parametrize("bad", ["", "   "])
+def test_an_empty_path_is_refused(bad):
+    with pytest.raises(InputError, match="type where"):
+        export_config(Session(), bad)
+
+
+def test_a_folder_is_refused(tmp_path):
+    with pytest.raises(OutputError, match="is a folder"):
+        export_config(Session(), tmp_path)
+
+
+def test_nothing_leaves_the_root(tmp_path):
+    root = tmp_path / "root"
+    root.mkdir()
+    (root / "link").symlink_to(tmp_path)
+    for path in (tmp_path / "x.toml", root / ".." / "x.toml", root / "link" / "x.toml"):
+        with pytest.raises(InputError, match="outside"):
+            export_config(Session(), path, root=root)
+    assert inside_root(root / "a" / "b.toml", root) == (root / "a" / "b.toml").resolve()
+    assert not (tmp_path / "x.toml").exists()
+
+
+def test_the_command_can_be_pasted_whatever_the_names():
+    session = Session(folder="/my corpora/it's one", sentence="s one")
+    parts = shlex.split(replay_command(session, "/tmp/a b.toml"))
+    assert parts[:3] == ["corpus-tools", "synth", "/my corpora/it's one"]
+    assert parts[parts.index("--utterance") + 1] == "s one"
+    assert parts[parts.index("--config") + 1] == "/tmp/a b.toml"
+    assert "--include-self" not in parts
+    session.held_out = False
+    assert "--include-self" in shlex.split(replay_command(session, "c.toml"))
+
+
+def test_the_suggested_file_is_new(tmp_path):
+    assert suggested_path(tmp_path, "blend").name == "blend.toml"
+    (tmp_path / "blend.toml").touch()
+    (tmp_path / "blend-2.toml").touch()
+    assert suggested_path(tmp_path, "blend").name == "blend-3.toml"

@@ -1,0 +1,32 @@
+"""What the page exports, the command line makes again: the same bytes of motion."""
+
+import shlex
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from corpus_tools.pipeline import write_motion
+from workbench.actions import export_config, replay_command
+from workbench.state import Session, Stages
+
+
+@pytest.mark.slow
+def test_the_exported_line_makes_the_same_bytes_of_motion(opened, corpus_folder, tmp_path):
+    session = Session(folder=str(corpus_folder))
+    session.opened(opened)
+    session.param.update(weighting="raised-cosine", shape=0.3, overlap_s=0.09, mesh="female")
+    result = Stages().run(session.request())
+    path, _ = export_config(session, tmp_path / "tuned.toml")
+    line = replay_command(session, path)
+    words = shlex.split(line)
+    assert words[0] == "corpus-tools"
+    command = [sys.executable, "-c", "from corpus_tools.cli.main import run; run()", *words[1:]]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    made = tmp_path / f"{session.sentence}_out"
+    write_motion(tmp_path / "page.npz", result.trajectory)
+    assert (made / "motion.npz").read_bytes() == (tmp_path / "page.npz").read_bytes()
+    vertices = np.load(made / "mesh.npz")["vertices_mm"]
+    assert vertices.shape[1] == result.head.mesh.n_vertices

@@ -1,0 +1,70 @@
+"""The command: wrong arguments are one sentence and exit 2; only loopback without a password."""
+
+import socket
+import subprocess
+import sys
+
+import pytest
+
+from corpus_tools.core import InputError
+from workbench.apps.serving import Options, check_options, read_password
+
+
+def workbench(*arguments):
+    code = "from workbench.apps.main import run; run()"
+    return subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (("--app", "nonsense"), "nonsense"),
+        (("/no/such/corpus",), "corpus.toml"),
+        (("--host", "0.0.0.0"), "--password-file"),
+        (("--port", "99999"), "99999"),
+        (("--root", "/no/such/folder"), "--root"),
+    ],
+)
+def test_a_mistake_is_one_sentence_and_exit_2(arguments, word):
+    done = workbench(*arguments)
+    assert done.returncode == 2
+    assert word in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "Traceback" not in done.stderr
+
+
+def test_a_port_in_use_is_named():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(InputError, match=str(port)):
+            check_options(Options(port=port))
+
+
+def test_another_host_needs_password_origin_and_root(tmp_path):
+    password = tmp_path / "password"
+    password.write_text("long enough\n")
+    with pytest.raises(InputError, match=r"--origin, --root"):
+        check_options(Options(host="0.0.0.0", port=0, password_file=password))
+    check_options(
+        Options(host="0.0.0.0", port=0, password_file=password, origins=("lab:5006",), root=tmp_path)
+    )
+
+
+@pytest.mark.parametrize("text", ["", "short\n"])
+def test_a_weak_password_is_refused(tmp_path, text):
+    path = tmp_path / "password"
+    path.write_text(text)
+    with pytest.raises(InputError, match="8 characters"):
+        read_password(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_password(tmp_path / "none")
+
+
+def test_version():
+    done = workbench("--version")
+    assert done.returncode == 0
+    assert done.stdout.startswith("workbench ")

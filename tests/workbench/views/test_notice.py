@@ -1,0 +1,72 @@
+"""Notices and the inspector escape what comes from files, and always stand beside a sign."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from workbench.state import FragmentDetails
+from workbench.views.inspector import details_html
+from workbench.views.notice import NOTICE_KINDS, notice_html
+
+HOSTILE = "<img src=x onerror=alert(1)>"
+
+
+@pytest.mark.parametrize("kind", [k for k, sign in NOTICE_KINDS.items() if sign])
+def test_colour_is_never_the_only_sign(kind):
+    assert NOTICE_KINDS[kind] in notice_html(kind, "what")
+
+
+@given(st.text(alphabet="<>&'\"ab`", max_size=20))
+def test_texts_are_escaped(text):
+    made = notice_html("err", text, text, text, [text])
+    for tag in ("<img", "<script", "<a", "<b>"):
+        assert tag not in made
+    assert made.count("<div") == 1
+
+
+def details(**changes):
+    values = dict(
+        index=1,
+        n_fragments=3,
+        slot=1,
+        source="a1",
+        text="place red",
+        phones="P L EY",
+        first_s=0.5,
+        last_s=0.9,
+        costs=(("timing", 0.4), ("position", 0.2)),
+        join_costs=(("position", 0.2),),
+        total=0.6,
+        backoff=(),
+        join={
+            "time": 0.7,
+            "overlap": 0.12,
+            "phone": "EY",
+            "gap": 1.5,
+            "percentile": 97.0,
+            "gap_mm_s": 20.0,
+            "before": "b2",
+        },
+        rejected=(("c3", "lay blue", 0.9, 0.1),),
+    )
+    return FragmentDetails(**{**values, **changes})
+
+
+def test_inspector_shows_source_costs_join_and_rejected():
+    made = details_html(details(), "light")
+    for text in ("a1", "place red", "Fragment 2 of 3", "0.40", "0.60", "120 ms", "1.50 mm", "c3", "0.90"):
+        assert text in made
+    assert "▲ above p95" in made
+    assert "✓ natural" in details_html(details(join={**details().join, "percentile": 40.0}), "light")
+
+
+def test_inspector_escapes_what_files_say():
+    made = details_html(
+        details(source=HOSTILE, text=HOSTILE, rejected=((HOSTILE, HOSTILE, 1.0, 1.0),)), "dark"
+    )
+    assert "<img" not in made
+
+
+def test_first_fragment_has_no_join_before_it():
+    assert "No join before" in details_html(details(index=0, join=None), "light")
+    assert "No fragment selected" in details_html(None, "light")

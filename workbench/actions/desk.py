@@ -1,0 +1,147 @@
+"""One person's desk: opens corpora, keeps the result up to date with the settings, exports; no Panel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from corpus_tools.core import WorkbenchError
+from corpus_tools.pipeline import OpenCorpus, corpus_provenance
+from workbench.actions.corpora import CorpusCache
+from workbench.actions.export import export_config, replay_command
+from workbench.actions.jobs import Job, LatestJob
+from workbench.state import SETTINGS, Result, Session, Stages
+
+__all__ = ["Desk"]
+
+
+class Desk:
+    """Ties a session to the work behind it.
+
+    Whatever changes in the session (sentence, a setting) starts a job; the newest request wins, and results
+    of older ones never replace newer ones. Two desks share nothing but the cache of opened corpora.
+
+    Parameters
+    ----------
+    session : Session
+    cache : CorpusCache
+    deliver : callable
+        ``deliver(action)`` runs ``action()`` where the session's parameters may be set.
+    """
+
+    def __init__(
+        self, session: Session, cache: CorpusCache, deliver: Callable[[Callable[[], None]], None]
+    ) -> None:
+        self.session = session
+        self.cache = cache
+        self.stages = Stages()
+        self._wanted_sentence: str | None = None
+        self._opening: LatestJob[OpenCorpus] = LatestJob(
+            deliver, self._opened, self._not_opened, self._progress
+        )
+        self._results: LatestJob[Result] = LatestJob(
+            deliver, session.accept, self._refused, idle=lambda: session.param.update(working=False)
+        )
+        self._exports: LatestJob[Path] = LatestJob(deliver, self._exported, self._not_exported)
+        self._on_export: Callable[[str, str], None] = lambda kind, text: None
+        session.param.watch(self._recompute, ["corpus", "sentence", "held_out", *SETTINGS])
+
+    def open(self, folder: str | Path, sentence: str | None = None) -> None:
+        """Open a corpus in the background; the session shows progress, the corpus, or why it could not."""
+        self._wanted_sentence = sentence
+        self.session.begin_opening(str(folder))
+        config = self.session.config
+        self._opening.submit(lambda job: self.cache.open(folder, job.progress, config), cancel_running=True)
+
+    def make_and_open(self, make: Callable[[Callable[[float, str], None]], Path]) -> None:
+        """Make a corpus (the simulated one), then open it; both with progress and cancel.
+
+        Parameters
+        ----------
+        make : callable
+            ``make(progress) -> folder``.
+        """
+        self._wanted_sentence = None
+        self.session.begin_opening("")
+        config = self.session.config
+
+        def work(job: Job) -> OpenCorpus:
+            folder = make(lambda f, w: job.progress(0.6 * f, w))
+            return self.cache.open(folder, lambda f, w: job.progress(0.6 + 0.4 * f, w), config)
+
+        self._opening.submit(work, cancel_running=True)
+
+    def cancel(self) -> None:
+        """Stop opening, or drop the results that are under way."""
+        if self.session.status == "opening":
+            self._opening.cancel()
+            self.session.opening_cancelled()
+        else:
+            self._results.cancel()
+
+    def close(self) -> None:
+        """End all work; the tab is gone."""
+        for jobs in (self._opening, self._results, self._exports):
+            jobs.close()
+
+    def _progress(self, number: int, fraction: float, what: str) -> None:
+        if self.session.status == "opening":
+            self.session.param.update(fraction=min(1.0, max(0.0, fraction)), doing=what)
+
+    def _opened(self, number: int, corpus: OpenCorpus) -> None:
+        if self.session.status != "opening":
+            return
+        self.session.folder = self.session.folder or str(corpus.description.folder)
+        try:
+            self.session.opened(corpus, self._wanted_sentence)
+        except WorkbenchError as error:
+            self.session.opening_failed(str(error))
+
+    def _not_opened(self, number: int, sentence: str) -> None:
+        self.session.opening_failed(sentence)
+
+    def _refused(self, number: int, sentence: str) -> None:
+        self.session.refuse(number, sentence)
+
+    def _recompute(self, *events: Any) -> None:
+        try:
+            request = self.session.request()
+        except WorkbenchError as error:
+            self.session.message = str(error)
+            return
+        if request is None:
+            self._results.cancel()
+            return
+        other_target = any(e.name in ("corpus", "sentence") for e in events)
+        self.session.working = True
+        self._results.submit(lambda job: self.stages.run(request, job.check), cancel_running=other_target)
+
+    def export(self, path: str | Path, done: Callable[[str, str], None]) -> None:
+        """Write the config in the background.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        done : callable
+            ``done(kind, text)``: ("ok", the line that replays it) or ("err", one sentence).
+        """
+        self._on_export = done
+        corpus = self.session.corpus
+        if corpus is None or not self.session.sentence:
+            done("err", "There is nothing to export yet: open a corpus and pick a sentence first.")
+            return
+
+        def work(job: Job) -> Path:
+            provenance = corpus_provenance(corpus)
+            job.check()
+            return export_config(self.session, path, provenance, self.cache.root)[0]
+
+        self._exports.submit(work)
+
+    def _exported(self, number: int, path: Path) -> None:
+        self._on_export("ok", replay_command(self.session, path))
+
+    def _not_exported(self, number: int, sentence: str) -> None:
+        self._on_export("err", sentence)

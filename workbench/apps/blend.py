@@ -1,0 +1,159 @@
+"""The first page: a sentence of the corpus, the fragments that speak it, g(u), the moving head, export."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+
+from workbench.actions import CorpusCache, Desk, suggested_path
+from workbench.state import Session
+from workbench.views.bar import AppBar
+from workbench.views.controls import Controls
+from workbench.views.export_box import ExportBox
+from workbench.views.shell import Shell
+from workbench.views.transport import Transport
+from workbench.views.welcome import Welcome
+from workbench.views.work_board import PRESETS, BlendBoard, FragmentInspector, settings_panel
+
+__all__ = ["DASHBOARDS", "BlendPage"]
+
+DASHBOARDS = [{"id": "corpus", "label": "Corpus"}, {"id": "blend", "label": "Blend"}]
+"""What the rail shows: only what exists."""
+
+_STATUS_KEYS = ["play", "from_start", "previous_join", "next_join", "curve", "fit", "help"]
+_clocks = itertools.count(1)
+
+
+class BlendPage:
+    """One browser tab: session, desk and views, wired together.
+
+    Parameters
+    ----------
+    cache : CorpusCache
+        Shared by the tabs of a server.
+    make_demo : callable
+        ``make_demo(progress) -> folder`` of the simulated starter corpus.
+    export_folder : path
+        Where the first suggestion for a config file points.
+    deliver : callable
+        Runs an action where this tab's parameters may be set.
+    fill : bool
+        Fill the window; False in a notebook cell.
+    """
+
+    def __init__(
+        self,
+        cache: CorpusCache,
+        make_demo: Callable[[Callable[[float, str], None]], Path],
+        export_folder: Path,
+        deliver: Callable[[Callable[[], None]], None],
+        fill: bool = True,
+    ) -> None:
+        self.session = Session()
+        self.desk = Desk(self.session, cache, deliver)
+        self._make_demo = make_demo
+        self._picking = False
+        clock = f"page-{next(_clocks)}"
+        self.controls = Controls(self.session)
+        self.bar = AppBar(self.session, self.controls, on_corpus=lambda: self.show("corpus"))
+        self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
+        self.board = BlendBoard(self.session, self.controls, clock)
+        self.inspector = FragmentInspector(self.session)
+        self.export = ExportBox(
+            self.controls, str(suggested_path(export_folder, "blend")), on_export=self.desk.export
+        )
+        self.welcome = Welcome(
+            self.session,
+            self.controls,
+            on_open=self.desk.open,
+            on_demo=lambda: self.desk.make_and_open(self._make_demo),
+            on_cancel=self.desk.cancel,
+            on_back=lambda: self.show("blend"),
+        )
+        self.shell = Shell(
+            on_key=self._key,
+            on_rail=self.show,
+            bar=self.bar.__panel__(),
+            transport=self.transport,
+            work=self.board.__panel__(),
+            start=self.welcome.__panel__(),
+            starting=True,
+            inspector=self.inspector.pane,
+            inspector_foot=pn.Column(
+                settings_panel(self.controls),
+                self.export.__panel__(),
+                sizing_mode="stretch_width",
+                margin=0,
+            ),
+            dashboards=DASHBOARDS,
+            active="corpus",
+            status_keys=_STATUS_KEYS,
+            session=clock,
+            theme=self.session.theme,
+            fill=fill,
+        )
+        self._watch()
+        self._status()
+
+    def _watch(self) -> None:
+        watch = self.session.param.watch
+        watch(self._theme, "theme")
+        watch(self._status, ["status", "working", "result", "corpus", "fraction", "message"])
+        watch(self._corpus, "corpus")
+        watch(self._sound, "result")
+
+    def show(self, dashboard: str) -> None:
+        """Show the corpus page or the blend page; without a corpus there is only the first."""
+        blend = dashboard == "blend" and self.session.corpus is not None
+        self.shell.param.update(starting=not blend, active="blend" if blend else "corpus")
+
+    def _corpus(self, event: Any) -> None:
+        if event.new is not None:
+            self.shell.page_title = f"{event.new.description.name} – blend"
+            self.show("blend")
+
+    def _theme(self, event: Any) -> None:
+        self.shell.theme = self.transport.theme = event.new
+
+    def _sound(self, event: Any) -> None:
+        result, old = event.new, event.old
+        if result is None:
+            return
+        if old is None or not old.request.same_target(result.request):
+            self.transport.load(result.utterance, result.request.corpus.phones)
+
+    def _key(self, action: str, index: int) -> None:
+        session = self.session
+        if action in ("previous_sentence", "next_sentence"):
+            session.step_sentence(1 if action == "next_sentence" else -1)
+        elif action == "curve" and index < len(PRESETS):
+            session.weighting = list(PRESETS.values())[index]
+        elif action == "theme":
+            self.bar.toggle_theme()
+        elif action == "cancel":
+            self.desk.cancel()
+
+    def _status(self, *events: Any) -> None:
+        s = self.session
+        left = "No corpus open"
+        if s.corpus is not None:
+            skipped = len(s.corpus.skipped)
+            left = f"✓ {s.corpus.description.name}: {len(s.corpus.names)} recordings"
+            left += f", ▲ {skipped} left out" if skipped else ""
+        measured = ""
+        if s.result is not None and s.result.ran:
+            measured = f"{', '.join(s.result.ran)} in <b>{s.result.elapsed_ms:.0f} ms</b>"
+        jobs = "idle"
+        if s.status == "opening":
+            jobs = f"opening, {100 * s.fraction:.0f} %"
+        elif s.working:
+            jobs = "computing"
+        self.shell.param.update(status_text=left, measured=measured, jobs_text=jobs)
+
+    def close(self) -> None:
+        """End this tab's work."""
+        self.desk.close()

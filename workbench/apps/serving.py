@@ -1,0 +1,218 @@
+"""The server: one page per browser tab, corpora shared, loopback unless a password guards it."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+import platformdirs
+
+from corpus_tools.core import InputError
+from corpus_tools.demo import demo_folder
+from workbench.actions import CorpusCache
+from workbench.apps.blend import BlendPage
+from workbench.views.theme import ASSETS_ROUTE, FRONTEND
+
+__all__ = ["LOOPBACK", "Options", "Workbench", "check_options", "free_port", "read_password"]
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+MAX_MESSAGE_BYTES = 64 * 1024 * 1024
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What the command line says about the server.
+
+    Attributes
+    ----------
+    corpus : path or None
+    host : str
+    port : int
+        0 takes a free one.
+    password_file : path or None
+        First line: the password; needed on any host but loopback.
+    origins : tuple of str
+        Host names (with port) that pages may be asked from.
+    root : path or None
+        Folder that corpora and exports must lie in; needed on any host but loopback.
+    browser : bool
+        Open the browser.
+    demo : bool
+        Open the simulated starter corpus when no corpus is given.
+    """
+
+    corpus: Path | None = None
+    host: str = "127.0.0.1"
+    port: int = 5006
+    password_file: Path | None = None
+    origins: tuple[str, ...] = field(default=())
+    root: Path | None = None
+    browser: bool = True
+    demo: bool = False
+
+
+def read_password(path: Path) -> str:
+    """Return the first line of a password file.
+
+    Raises
+    ------
+    InputError
+        The file is missing, or its first line is shorter than 8 characters.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"The password file '{path}' cannot be read: {error}.") from None
+    password = lines[0].strip() if lines else ""
+    if len(password) < 8:
+        raise InputError(f"The first line of '{path}' must hold a password of at least 8 characters.")
+    return password
+
+
+def check_options(options: Options) -> None:
+    """Refuse what is unsafe or cannot work.
+
+    Raises
+    ------
+    InputError
+        One sentence: a host other than loopback without password, origin and root; a corpus or root that is
+        no folder; a port in use.
+    """
+    if options.host not in LOOPBACK:
+        missing = [
+            name
+            for name, value in (
+                ("--password-file", options.password_file),
+                ("--origin", options.origins),
+                ("--root", options.root),
+            )
+            if not value
+        ]
+        if missing:
+            raise InputError(
+                f"--host {options.host} opens the workbench to other machines: give {', '.join(missing)} "
+                "too, or leave --host out."
+            )
+    if options.root is not None and not options.root.is_dir():
+        raise InputError(f"--root '{options.root}' is not a folder.")
+    if options.corpus is not None and not (options.corpus / "corpus.toml").is_file():
+        raise InputError(
+            f"There is no corpus.toml in '{options.corpus}': make a corpus with 'corpus-tools init', "
+            "or give the folder that holds it."
+        )
+    _check_port(options.host, options.port)
+
+
+def _check_port(host: str, port: int) -> None:
+    if not 0 <= port <= 65535:
+        raise InputError(f"--port {port} is not a port; give a number between 0 and 65535.")
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise InputError(
+                f"Cannot listen on {host} port {port}: {reason}; choose another with --port."
+            ) from None
+
+
+def free_port(host: str = "127.0.0.1") -> int:
+    """Return a port nobody listens on."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.bind((host, 0))
+        return int(probe.getsockname()[1])
+
+
+class Workbench:
+    """Builds a page for every browser tab and keeps the corpora they share.
+
+    Attributes
+    ----------
+    pages : list of BlendPage
+        The tabs that are open.
+    """
+
+    def __init__(self, options: Options) -> None:
+        self.options = options
+        self.cache = CorpusCache(options.root)
+        self.pages: list[BlendPage] = []
+        self._demo_lock = threading.Lock()
+
+    def make_demo(self, progress: Callable[[float, str], None]) -> Path:
+        """Make the simulated starter corpus once, in the user's cache folder; return its folder."""
+        folder = (
+            Path(platformdirs.user_cache_dir("visual-speech-workbench", appauthor=False)) / "starter-corpus"
+        )
+        while not self._demo_lock.acquire(timeout=0.2):
+            progress(0.0, "another tab is making it")
+        try:
+            return demo_folder(folder, progress)
+        finally:
+            self._demo_lock.release()
+
+    def page(self) -> Any:
+        """Return the page of a new tab."""
+        doc = pn.state.curdoc
+
+        def deliver(action: Callable[[], None]) -> None:
+            if doc.session_context is not None and not doc.session_context.destroyed:
+                doc.add_next_tick_callback(action)
+
+        made = BlendPage(
+            self.cache,
+            self.make_demo,
+            self.options.root or Path.cwd(),
+            deliver if doc is not None else _at_once,
+        )
+        self.pages.append(made)
+        if doc is not None:
+            doc.on_session_destroyed(lambda _: self._gone(made))
+            doc.title = made.shell.page_title
+        if self.options.corpus is not None:
+            made.desk.open(self.options.corpus)
+        elif self.options.demo:
+            made.desk.make_and_open(self.make_demo)
+        return made.shell
+
+    def _gone(self, page: BlendPage) -> None:
+        page.close()
+        if page in self.pages:
+            self.pages.remove(page)
+
+    def serve(self, port: int | None = None, threaded: bool = False, browser: bool | None = None) -> Any:
+        """Start the server; returns it (or its thread) when `threaded`, else blocks until it is stopped."""
+        options = self.options
+        port = (options.port if port is None else port) or free_port(options.host)
+        guard: dict[str, Any] = {}
+        if options.password_file is not None:
+            guard = {
+                "basic_auth": read_password(options.password_file),
+                "cookie_secret": secrets.token_hex(32),
+            }
+        return pn.serve(
+            {"/": self.page},
+            port=port,
+            address=options.host,
+            websocket_origin=list(options.origins)
+            or [f"{name}:{port}" for name in ("127.0.0.1", "localhost")],
+            show=options.browser if browser is None else browser,
+            title="Visual speech workbench",
+            static_dirs={ASSETS_ROUTE: str(FRONTEND / "fonts")},
+            websocket_max_message_size=MAX_MESSAGE_BYTES,
+            threaded=threaded,
+            verbose=False,
+            **guard,
+        )
+
+
+def _at_once(action: Callable[[], None]) -> None:
+    action()

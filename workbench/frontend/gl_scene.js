@@ -1,0 +1,186 @@
+/** The scene of a mesh view: its actors, its lights, and how it is drawn. */
+import { Actor } from "./gl_actor.js";
+import { MAX_LIGHTS, programs, useTexture } from "./gl_program.js";
+import { SmoothEdges, drawnInSoftware } from "./gl_smooth.js";
+import { length, multiply, parallel, perspective, subtract, unit, viewMatrix } from "./linalg.js";
+
+const NEAR = 0.02;
+const FAR = 8;
+const FIT_ANGLE = 30;
+
+/** Actors drawn by WebGL2; throws a sentence where that is not possible. */
+export class Scene {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false });
+    if (!gl) throw new Error("this browser offers no WebGL2");
+    if (!gl.getExtension("EXT_color_buffer_float")) {
+      throw new Error("this browser's WebGL2 cannot draw into float textures");
+    }
+    this.gl = gl;
+    this.programs = programs(gl);
+    this.smooth = new SmoothEdges(gl);
+    /** Smooth edges cost too much while something moves. */
+    this.slow = drawnInSoftware(gl);
+    /** @type {Map<string, Actor>} */
+    this.actors = new Map();
+  }
+
+  /** Replace all actors. */
+  setActors(specs) {
+    this.clear();
+    for (const spec of specs) this.actors.set(spec.name, new Actor(this.gl, spec));
+  }
+
+  /** Displace the markers of a deforming actor. */
+  deform(name, displacement) {
+    const actor = this.actors.get(name);
+    if (actor?.basis) actor.setDisplacement(this.programs.deform, displacement);
+  }
+
+  /** A camera that looks at everything from the front. */
+  fit() {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    for (const { bounds } of this.actors.values()) {
+      for (let k = 0; k < 3; k += 1) {
+        low[k] = Math.min(low[k], bounds[0][k]);
+        high[k] = Math.max(high[k], bounds[1][k]);
+      }
+    }
+    const centre = low.map((v, k) => (Number.isFinite(v) ? 0.5 * (v + high[k]) : 0));
+    const radius = Number.isFinite(low[0]) ? 0.5 * length(subtract(high, low)) || 1 : 1;
+    const distance = radius / Math.sin((0.5 * FIT_ANGLE * Math.PI) / 180);
+    return {
+      position: [centre[0], centre[1], centre[2] + distance],
+      focal_point: centre,
+      view_up: [0, 1, 0],
+      view_angle: FIT_ANGLE,
+      parallel_scale: 0,
+    };
+  }
+
+  matrices(camera) {
+    const { drawingBufferWidth: w, drawingBufferHeight: h } = this.gl;
+    const distance = length(subtract(camera.position, camera.focal_point)) || 1;
+    const range = [w / h, NEAR * distance, FAR * distance];
+    const projection = camera.parallel_scale
+      ? parallel(camera.parallel_scale, ...range)
+      : perspective(camera.view_angle, ...range);
+    return { view: viewMatrix(camera), projection };
+  }
+
+  /**
+   * Draw everything: what is opaque first, then what is not, its nearest layer only.
+   * @param {object} camera position, focal_point, view_up, view_angle (degrees), parallel_scale (0: perspective)
+   * @param {{direction: number[], colour: number[], eye: boolean}[]} lights
+   * @param {number[]} ground red, green, blue
+   * @param {boolean} smooth with smooth edges
+   */
+  draw(camera, lights, ground, smooth = true) {
+    const { gl } = this;
+    const { program } = this.programs.draw;
+    const { view, projection } = this.matrices(camera);
+    if (smooth) this.smooth.begin();
+    else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    gl.clearColor(ground[0], ground[1], ground[2], 1);
+    gl.colorMask(true, true, true, true);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.disable(gl.BLEND);
+    gl.useProgram(program);
+    this.setLights(lights, view);
+    const shown = [...this.actors.values()].filter((a) => a.visible && a.opacity > 0 && a.n);
+    for (const actor of shown) if (actor.opacity >= 1) this.drawActor(actor, view, projection);
+    for (const actor of shown) {
+      if (actor.opacity >= 1) continue;
+      gl.colorMask(false, false, false, false);
+      this.drawActor(actor, view, projection);
+      gl.colorMask(true, true, true, true);
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+      this.drawActor(actor, view, projection);
+      gl.disable(gl.BLEND);
+    }
+    gl.bindVertexArray(null);
+    if (smooth) this.smooth.end();
+  }
+
+  setLights(lights, view) {
+    const { gl } = this;
+    const { at } = this.programs.draw;
+    const from = new Float32Array(3 * MAX_LIGHTS);
+    const colour = new Float32Array(3 * MAX_LIGHTS);
+    lights.slice(0, MAX_LIGHTS).forEach((light, i) => {
+      const d = light.direction;
+      const turned = light.eye
+        ? d
+        : [0, 1, 2].map((row) => view[row] * d[0] + view[4 + row] * d[1] + view[8 + row] * d[2]);
+      from.set(unit(turned), 3 * i);
+      colour.set(light.colour, 3 * i);
+    });
+    gl.uniform1i(at.lights, Math.min(lights.length, MAX_LIGHTS));
+    gl.uniform3fv(at.lightFrom, from);
+    gl.uniform3fv(at.lightColour, colour);
+  }
+
+  drawActor(actor, view, projection) {
+    const { gl } = this;
+    const { at } = this.programs.draw;
+    const { spec } = actor;
+    let toEye = spec.matrix ? multiply(view, spec.matrix) : view;
+    if (actor.rigid) toEye = multiply(toEye, actor.rigid);
+    gl.bindVertexArray(actor.array);
+    if (!actor.coloured) gl.vertexAttrib4f(0, 1, 1, 1, 1);
+    const tint = actor.coloured ? [1, 1, 1] : spec.colour;
+    gl.uniform4f(at.tint, ...tint, actor.opacity);
+    gl.uniform4f(at.material, ...spec.material);
+    gl.uniformMatrix4fv(at.toEye, false, toEye);
+    gl.uniformMatrix4fv(at.toClip, false, multiply(projection, toEye));
+    gl.uniform1i(at.kind, actor.kind);
+    gl.uniform1i(at.width, actor.width);
+    gl.uniform1f(at.pointSize, spec.size * (globalThis.devicePixelRatio || 1));
+    useTexture(gl, 0, gl.TEXTURE_2D, actor.current, at.positions);
+    if (actor.kind === 0) {
+      gl.uniform1i(at.ringWidth, actor.ringWidth);
+      useTexture(gl, 3, gl.TEXTURE_2D, actor.ring, at.ring);
+      useTexture(gl, 4, gl.TEXTURE_2D, actor.ringStart, at.ringStart);
+      gl.drawElements(gl.TRIANGLES, actor.corners, gl.UNSIGNED_INT, 0);
+    } else {
+      useTexture(gl, 3, gl.TEXTURE_2D, null, at.ring);
+      useTexture(gl, 4, gl.TEXTURE_2D, null, at.ringStart);
+      gl.drawArrays(gl.POINTS, 0, actor.n);
+    }
+  }
+
+  /** Red, green, blue, opacity of every pixel that was just drawn, from the lower left on. */
+  pixels() {
+    const { gl } = this;
+    const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    const out = new Uint8Array(4 * w * h);
+    gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, out);
+    return out;
+  }
+
+  /** Wait until everything asked for is drawn. */
+  finish() {
+    const { gl } = this;
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
+  clear() {
+    for (const actor of this.actors.values()) actor.dispose();
+    this.actors.clear();
+  }
+
+  /** Give everything back, the context too: a browser has only so many. */
+  dispose() {
+    this.clear();
+    this.smooth.dispose();
+    this.gl.deleteProgram(this.programs.deform.program);
+    this.gl.deleteProgram(this.programs.draw.program);
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
+  }
+}

@@ -1,0 +1,3 @@
+"""Views."""
+
+__all__: list[str] = []

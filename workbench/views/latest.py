@@ -1,0 +1,87 @@
+"""Back-pressure: at most one change is on its way to the browser, and the latest replaces the waiting one."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+__all__ = ["LatestWins"]
+
+
+class LatestWins:
+    """Sends changes no faster than they are acknowledged.
+
+    Before somebody is there to acknowledge (:meth:`ready`) changes are sent at once: they only set the state
+    that the browser will begin with. A change that stays without an answer for `patience_s` (a hidden tab
+    draws nothing, a closed one says nothing) no longer holds up the next.
+
+    Parameters
+    ----------
+    send : callable
+        ``send(number, key, change)``; numbers grow by one.
+    patience_s : float, s
+    now : callable
+        The clock, in seconds.
+
+    Attributes
+    ----------
+    dropped : int
+        Changes that were replaced by a later one before they were sent.
+    """
+
+    def __init__(
+        self,
+        send: Callable[[int, str, Any], None],
+        patience_s: float = 2.0,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._send, self._patience_s, self._now = send, patience_s, now
+        self._lock = threading.RLock()
+        self._number = 0
+        self._flying = 0
+        self._since_s = 0.0
+        self._listening = False
+        self._waiting: dict[str, Any] = {}
+        self.dropped = 0
+
+    @property
+    def number(self) -> int:
+        """Number of the last change that was sent; 0: none."""
+        return self._number
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a change waits for an acknowledgement of the one before."""
+        return bool(self._waiting)
+
+    def ready(self) -> None:
+        """Somebody listens from now on; what was on its way has become part of what they begin with."""
+        with self._lock:
+            self._listening = True
+            self._flying = 0
+            self._flush()
+
+    def offer(self, key: str, change: Any) -> None:
+        """Send a change, or let it wait; a waiting one of the same key is dropped."""
+        with self._lock:
+            self.dropped += key in self._waiting
+            self._waiting[key] = change
+            if not self._flying or self._now() - self._since_s > self._patience_s:
+                self._flush()
+
+    def acknowledge(self, number: int) -> None:
+        """Take note that change `number`, and all before it, was painted."""
+        with self._lock:
+            if number >= self._flying:
+                self._flying = 0
+                self._flush()
+
+    def _flush(self) -> None:
+        waiting, self._waiting = self._waiting, {}
+        for key, change in waiting.items():
+            self._number += 1
+            if self._listening:
+                self._flying, self._since_s = self._number, self._now()
+            self._send(self._number, key, change)
