@@ -59,6 +59,18 @@ def settled(tab, session):
     until(tab, shown)
 
 
+def at_rest(tab, where):
+    """Return the box of the lane and the result of a script about it, once two looks agree: layout has ended."""
+    seen = []
+
+    def look():
+        seen.append((lane(tab).bounding_box(), lane(tab).evaluate(where)))
+        return len(seen) > 3 and seen[-1] == seen[-2] == seen[-3]
+
+    until(tab, look)
+    return seen[-1]
+
+
 def pixels(tab, part):
     return tab.locator(part).first.screenshot()
 
@@ -85,8 +97,7 @@ def drag(tab, label, share):
 
 def seek_to_join(tab):
     """Put the clock a little before the first join, where g(u) matters."""
-    box = lane(tab).bounding_box()
-    x = lane(tab).evaluate("c => c.vsw.toX(c.vsw.state.joins[0].time - 0.01)")
+    box, x = at_rest(tab, "c => c.vsw.toX(c.vsw.state.joins[0].time - 0.01)")
     tab.mouse.click(box["x"] + x, box["y"] + 200)
 
 
@@ -103,9 +114,13 @@ def test_g_of_u_moves_pixels_of_lane_and_head(browser_page, served):
 
 def test_a_click_and_a_key_select_a_fragment(browser_page, served):
     session = drawn(browser_page, served)
-    box = lane(browser_page).bounding_box()
-    middle = "c => { const f = c.vsw.state.score.fragments[1]; return c.vsw.toX((f.start + f.end) / 2) }"
-    browser_page.mouse.click(box["x"] + lane(browser_page).evaluate(middle), box["y"] + 80)
+    middle = """c => {
+      const { box, score } = c.vsw.state;
+      const f = score.fragments[1];
+      return [c.vsw.toX((f.start + f.end) / 2), (box.fragments[0] + box.fragments[1]) / 2];
+    }"""
+    box, (x, y) = at_rest(browser_page, middle)
+    browser_page.mouse.click(box["x"] + x, box["y"] + y)
     browser_page.get_by_text(re.compile("^Fragment 2 of")).wait_for()
     assert session.selected == 1
     browser_page.keyboard.press("j")
