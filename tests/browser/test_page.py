@@ -60,7 +60,7 @@ def settled(tab, session):
 
 
 def at_rest(tab, where):
-    """Return the box of the lane and the result of a script about it, once two looks agree: layout has ended."""
+    """Return the box of the lane and what a script says of it, once three looks agree: layout has ended."""
     seen = []
 
     def look():
