@@ -7,7 +7,7 @@ diff, the schema and the command line pick it up from the registry.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -21,6 +21,7 @@ __all__ = [
     "ClosureSettings",
     "DeformSettings",
     "OutputSettings",
+    "OverrideSettings",
     "RetargetSettings",
     "Section",
     "SelectionSettings",
@@ -76,6 +77,18 @@ class SelectionSettings(Section):
     allow_backoff: bool = Field(True, description="Let a viseme class stand in where a diphone is missing.")
     components: int = Field(12, ge=1, le=60, description="Principal components of the join distance.")
     prune: int = Field(100, ge=1, description="Candidates kept per diphone by Viterbi.")
+
+
+@section("overrides")
+class OverrideSettings(Section):
+    """A person's word against the search: what must and what must not be used."""
+
+    pins: tuple[Annotated[str, Field(pattern=r"^\d+-\d+=.+:\d+-\d+$")], ...] = Field(
+        (), description="Target phones and the unit that must speak them: 'first-last=recording:i-j'."
+    )
+    bans: tuple[Annotated[str, Field(min_length=1)], ...] = Field(
+        (), description="Units ('recording:i-j') or whole recordings that must not be used."
+    )
 
 
 @section("alignment")

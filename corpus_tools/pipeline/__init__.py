@@ -5,6 +5,7 @@ from corpus_tools.pipeline.head import Animation, Head, animate, prepare_head, v
 from corpus_tools.pipeline.health import check_corpus, health_lines
 from corpus_tools.pipeline.opened import OpenCorpus, Progress, open_corpus
 from corpus_tools.pipeline.outputs import write_motion, write_synthesis
+from corpus_tools.pipeline.overrides import ban_of, overrides_of, parse_pin, pin_text
 from corpus_tools.pipeline.provenance import code_hash, corpus_provenance, library_versions
 from corpus_tools.pipeline.stages import Synthesis, align_units, blend_units, select_units, synthesise
 
@@ -17,6 +18,7 @@ __all__ = [
     "Synthesis",
     "align_units",
     "animate",
+    "ban_of",
     "blend_units",
     "check_corpus",
     "code_hash",
@@ -24,6 +26,9 @@ __all__ = [
     "health_lines",
     "library_versions",
     "open_corpus",
+    "overrides_of",
+    "parse_pin",
+    "pin_text",
     "prepare_head",
     "select_units",
     "synthesise",

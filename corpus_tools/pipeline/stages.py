@@ -16,6 +16,7 @@ from corpus_tools.methods import METHODS
 from corpus_tools.pipeline.closing import close_bilabials
 from corpus_tools.pipeline.head import Animation, Head, animate, vertex_frames
 from corpus_tools.pipeline.opened import OpenCorpus
+from corpus_tools.pipeline.overrides import overrides_of
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.pipeline.usable import LEAST_RATE_HZ
 from corpus_tools.synthesis import AlignedPieces, align_fragments, blend_pieces
@@ -67,18 +68,18 @@ def select_units(
     corpus : OpenCorpus
     utterance : Utterance
     config : config
-        Section `selection`.
+        Sections `selection` and `overrides`.
     exclude : iterable of str
         Recordings kept out of the inventory: the held-out sentence itself.
     pins : iterable of (first, last, unit)
-        Units that must speak the target phones `first` to `last`.
+        Units that must speak the target phones `first` to `last`, beside those of the config.
     bans : iterable of UnitRef or recording id
-        Units, or whole recordings, that must not be used.
+        Units, or whole recordings, that must not be used, beside those of the config.
 
     Raises
     ------
     InputError
-        There is no such method.
+        There is no such method, or a pin or a ban does not fit the utterance or the corpus.
     NoUnitError
         A diphone is covered by nothing, not even by backoff.
     """
@@ -86,12 +87,13 @@ def select_units(
     method = METHODS[config.selection.method]
     if config.selection.method == "greedy":
         weights.pop("prune")
+    pinned, banned = overrides_of(config)
     return method.search(
         corpus.model,
         utterance,
         exclude=tuple(exclude),
-        pins=tuple(pins),
-        bans=tuple(bans),
+        pins=(*pinned, *pins),
+        bans=(*banned, *bans),
         allow_backoff=config.selection.allow_backoff,
         **weights,
     )

@@ -5,6 +5,7 @@ from corpus_tools.synthesis.backoff import Pin
 from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
 from corpus_tools.synthesis.blending import blend_pieces, blend_weights, render_selection
 from corpus_tools.synthesis.closure import close_lips, closure_direction
+from corpus_tools.synthesis.effect import EffectCurve, effect_curves, narrowed, peak_ratios
 from corpus_tools.synthesis.greedy import greedy_as_printed, select_greedy
 from corpus_tools.synthesis.joins import (
     NaturalDistribution,
@@ -23,6 +24,7 @@ from corpus_tools.synthesis.weighting import WEIGHTINGS, weighting
 __all__ = [
     "WEIGHTINGS",
     "AlignedPieces",
+    "EffectCurve",
     "JoinFeatures",
     "NaturalDistribution",
     "PhoneClasses",
@@ -37,15 +39,18 @@ __all__ = [
     "blend_weights",
     "close_lips",
     "closure_direction",
+    "effect_curves",
     "fit_time_rbf",
     "fit_uniform_rbf",
     "fragment_warp",
     "greedy_as_printed",
     "join_features",
     "join_gaps",
+    "narrowed",
     "natural_distribution",
     "natural_percentiles",
     "overlap_lengths",
+    "peak_ratios",
     "posture_basis",
     "prepare_selection",
     "render_selection",

@@ -4,6 +4,7 @@ from workbench.actions.corpora import CorpusCache, inside_root
 from workbench.actions.desk import Desk
 from workbench.actions.export import export_config, replay_command, suggested_path
 from workbench.actions.jobs import Cancelled, Job, LatestJob
+from workbench.actions.picks import ban_unit, heard, options_shown, swap_to, swap_unit, toggle_pin, unban
 
 __all__ = [
     "Cancelled",
@@ -11,8 +12,15 @@ __all__ = [
     "Desk",
     "Job",
     "LatestJob",
+    "ban_unit",
     "export_config",
+    "heard",
     "inside_root",
+    "options_shown",
     "replay_command",
     "suggested_path",
+    "swap_to",
+    "swap_unit",
+    "toggle_pin",
+    "unban",
 ]

@@ -11,7 +11,7 @@ from corpus_tools.pipeline import OpenCorpus, corpus_provenance
 from workbench.actions.corpora import CorpusCache
 from workbench.actions.export import export_config, replay_command
 from workbench.actions.jobs import Job, LatestJob
-from workbench.state import SETTINGS, Result, Session, Stages
+from workbench.state import EDITABLE, Effects, Result, Session, Stages, compute_effects
 
 __all__ = ["Desk"]
 
@@ -43,9 +43,12 @@ class Desk:
         self._results: LatestJob[Result] = LatestJob(
             deliver, session.accept, self._refused, idle=lambda: session.param.update(working=False)
         )
+        self._effects: LatestJob[Effects] = LatestJob(deliver, self._measured, lambda number, sentence: None)
+        self._others: LatestJob[Result] = LatestJob(deliver, self._compared, lambda number, sentence: None)
         self._exports: LatestJob[Path] = LatestJob(deliver, self._exported, self._not_exported)
         self._on_export: Callable[[str, str], None] = lambda kind, text: None
-        session.param.watch(self._recompute, ["corpus", "sentence", "held_out", *SETTINGS])
+        session.param.watch(self._recompute, ["corpus", *EDITABLE])
+        session.param.watch(self._after, ["result", "kept", "side"])
 
     def open(self, folder: str | Path, sentence: str | None = None) -> None:
         """Open a corpus in the background; the session shows progress, the corpus, or why it could not."""
@@ -82,7 +85,7 @@ class Desk:
 
     def close(self) -> None:
         """End all work; the tab is gone."""
-        for jobs in (self._opening, self._results, self._exports):
+        for jobs in (self._opening, self._results, self._effects, self._others, self._exports):
             jobs.close()
 
     def _progress(self, number: int, fraction: float, what: str) -> None:
@@ -113,9 +116,33 @@ class Desk:
         if request is None:
             self._results.cancel()
             return
-        other_target = any(e.name in ("corpus", "sentence") for e in events)
+        other_target = any(e.name in ("corpus", "sentence", "text", "target_kind") for e in events)
         self.session.working = True
         self._results.submit(lambda job: self.stages.run(request, job.check), cancel_running=other_target)
+
+    def _after(self, *events: Any) -> None:
+        """Measure what the plots show of a result, and compute setting A where it is another one."""
+        session, result = self.session, self.session.result
+        if result is None:
+            session.param.update(effects=None, other=None)
+            return
+        if session.effects is None or not session.effects.fits(result):
+            self._effects.submit(lambda job: compute_effects(result), cancel_running=True)
+        wanted = session.request_of_a()
+        shown = session.other.request if session.other is not None else None
+        if wanted is None:
+            session.other = None
+        elif shown is None or not shown.same_target(wanted) or shown.config != wanted.config:
+            self._others.submit(lambda job: self.stages.run(wanted, job.check), cancel_running=True)
+
+    def _measured(self, number: int, effects: Effects) -> None:
+        if self.session.result is not None and effects.fits(self.session.result):
+            self.session.effects = effects
+
+    def _compared(self, number: int, other: Result) -> None:
+        wanted = self.session.request_of_a()
+        if wanted is not None and wanted.same_target(other.request) and wanted.config == other.request.config:
+            self.session.other = other
 
     def export(self, path: str | Path, done: Callable[[str, str], None]) -> None:
         """Write the config in the background.
@@ -129,7 +156,7 @@ class Desk:
         """
         self._on_export = done
         corpus = self.session.corpus
-        if corpus is None or not self.session.sentence:
+        if corpus is None or self.session.request() is None:
             done("err", "There is nothing to export yet: open a corpus and pick a sentence first.")
             return
 

@@ -1,41 +1,71 @@
 """What a person works on, without Panel: session, stages, tokens, keys, and data for the views."""
 
+from workbench.state.editing import EDITABLE, SETTINGS, TARGETS, default_config
+from workbench.state.effects import OVERLAPS_S, Effects, compute_effects, signal_band
+from workbench.state.history import Entry, History, change_text
 from workbench.state.keys import KeyBinding, key_label, key_table
 from workbench.state.lane_data import (
     FragmentDetails,
+    aperture_band,
     aperture_curves,
     fragment_details,
     joins_data,
     phone_rows,
     score,
+    stand_ins,
     weighting_samples,
 )
-from workbench.state.session import SETTINGS, STATUSES, Session, default_config
+from workbench.state.picks import Option, Options, fragment_at, options_of, pin_at, with_pin, without_pin
+from workbench.state.session import STATUSES, Session
+from workbench.state.signals import SIGNALS, Signal, marker_signal, signals_of, speed_mm_s
 from workbench.state.stages import Request, Result, Stages
 from workbench.state.tokens import THEMES, Tokens, css_variables, read_tokens, source_slots, tokens
 
 __all__ = [
+    "EDITABLE",
+    "OVERLAPS_S",
     "SETTINGS",
+    "SIGNALS",
     "STATUSES",
+    "TARGETS",
     "THEMES",
+    "Effects",
+    "Entry",
     "FragmentDetails",
+    "History",
     "KeyBinding",
+    "Option",
+    "Options",
     "Request",
     "Result",
     "Session",
+    "Signal",
     "Stages",
     "Tokens",
+    "aperture_band",
     "aperture_curves",
+    "change_text",
+    "compute_effects",
     "css_variables",
     "default_config",
+    "fragment_at",
     "fragment_details",
     "joins_data",
     "key_label",
     "key_table",
+    "marker_signal",
+    "options_of",
     "phone_rows",
+    "pin_at",
     "read_tokens",
     "score",
+    "signal_band",
+    "signals_of",
     "source_slots",
+    "speed_mm_s",
+    "stand_ins",
     "tokens",
     "weighting_samples",
+    "with_pin",
+    "without_pin",
 ]

@@ -11,16 +11,21 @@ import numpy as np
 from corpus_tools.core import ChosenUnit, FloatArray, Selection, Utterance
 from corpus_tools.speech import PhoneSet, lip_aperture_mm
 from corpus_tools.synthesis import weighting
+from workbench.state.effects import signal_band
+from workbench.state.picks import pin_at
+from workbench.state.signals import SIGNALS
 from workbench.state.stages import Result
 from workbench.state.tokens import source_slots
 
 __all__ = [
     "FragmentDetails",
+    "aperture_band",
     "aperture_curves",
     "fragment_details",
     "joins_data",
     "phone_rows",
     "score",
+    "stand_ins",
     "weighting_samples",
 ]
 
@@ -51,6 +56,7 @@ def _place(unit: ChosenUnit, utterance: Utterance, n_phones: int) -> tuple[float
 def _fragments(result: Result) -> list[dict[str, Any]]:
     utterance, chosen = result.utterance, result.selection.chosen
     slots = source_slots(tuple(c.unit.recording for c in chosen))
+    pins = result.request.config.overrides.pins
     rows = []
     for unit, slot in zip(chosen, slots, strict=True):
         start, end = _place(unit, utterance, len(utterance.labels))
@@ -64,6 +70,8 @@ def _fragments(result: Result) -> list[dict[str, Any]]:
                 "cost": unit.costs.total,
                 "slot": slot,
                 "backoff": [list(b) for b in unit.backoff],
+                "pinned": bool(pin_at(pins, unit.first, unit.last)),
+                "others": [c.unit.recording for c in unit.rejected],
             }
         )
     return rows
@@ -79,7 +87,7 @@ def score(result: Result) -> dict[str, Any]:
 
 
 def joins_data(result: Result) -> list[dict[str, Any]]:
-    """Return time (s), overlap (s), phone, gap (mm) and natural percentile (None: unknown) of each join."""
+    """Return time, overlap (s), phone, gap (mm), natural percentile, ratio (None: unknown) of each join."""
     return [
         {
             "time": j.time_s,
@@ -87,29 +95,66 @@ def joins_data(result: Result) -> list[dict[str, Any]]:
             "phone": j.phone,
             "gap": j.gap_mm,
             "percentile": j.natural_percentile if math.isfinite(j.natural_percentile) else None,
+            "ratio": ratio if math.isfinite(ratio) else None,
         }
-        for j in result.trajectory.joins
+        for j, ratio in zip(result.trajectory.joins, result.ratios, strict=True)
     ]
 
 
-def aperture_curves(result: Result) -> dict[str, Any]:
-    """Return the lip aperture (mm, float32 bytes) of the blend and of the recording, with rates and starts.
+def aperture_curves(result: Result, other: Result | None = None) -> dict[str, Any]:
+    """Return lip apertures (mm, float32 bytes) with their rates (Hz) and starts (s).
 
-    The recording's own capture is shown only as a reference; it is empty when the markers do not hold the
-    inner lips. `threshold` is the aperture (mm) below which this speaker's lips count as closed.
+    `blend` is the result, `other` that of setting A, `recorded` the capture of the same sentence (empty for a
+    text), `pieces` the fragments' own motion on the clock of the target, `threshold` the aperture (mm) below
+    which this speaker's lips count as closed.
+
+    Parameters
+    ----------
+    result : Result
+    other : Result, optional
+        Of the same target.
     """
     corpus, trajectory = result.request.corpus, result.trajectory
-    capture = corpus.recording(result.request.sentence).capture
     threshold = corpus.lips.threshold_mm
-    return {
+    found = {
         "blend": _float32(lip_aperture_mm(trajectory.values_mm, trajectory.names)),
         "rate": trajectory.rate_hz,
         "start": float(trajectory.times_s[0]),
-        "recorded": _float32(lip_aperture_mm(capture.positions_mm, capture.names)),
-        "recorded_rate": capture.rate_hz,
-        "recorded_start": capture.start_s,
+        "recorded": b"",
         "threshold": threshold if math.isfinite(threshold) else None,
+        "pieces": [
+            {
+                "start": float(trajectory.times_s[0]) + p.start / trajectory.rate_hz,
+                "values": _float32(lip_aperture_mm(p.motion_mm, result.pieces.names)),
+            }
+            for p in result.pieces.pieces
+        ],
+        "other": b"",
     }
+    if not result.request.text:
+        capture = corpus.recording(result.request.sentence).capture
+        found["recorded"] = _float32(lip_aperture_mm(capture.positions_mm, capture.names))
+        found |= {"recorded_rate": capture.rate_hz, "recorded_start": capture.start_s}
+    if other is not None and other.request.same_target(result.request):
+        found["other"] = _float32(lip_aperture_mm(other.trajectory.values_mm, other.trajectory.names))
+    return found
+
+
+def aperture_band(result: Result) -> dict[str, bytes]:
+    """Return the natural range of the lip aperture (float32 bytes: times s, low mm, high mm)."""
+    times, low, high = signal_band(result, SIGNALS[0])
+    return {"times": _float32(times), "low": _float32(low), "high": _float32(high)}
+
+
+def stand_ins(result: Result) -> list[str]:
+    """Return what stood in where a diphone is missing, as "UH spoken as UW (bbaf2n, at 1.20 s)"."""
+    phones = result.utterance.phones.intervals
+    found = []
+    for unit in result.selection.chosen:
+        for index, wanted, used in unit.backoff:
+            where = f"{unit.unit.recording}, at {phones[index].centre_s:.2f} s"
+            found.append(f"{wanted} spoken as {used} ({where})")
+    return list(dict.fromkeys(found))
 
 
 def weighting_samples(name: str, shape: float, n: int = 101) -> FloatArray:

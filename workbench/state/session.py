@@ -2,37 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import param
 
-from corpus_tools.config import ConfigBase, config_from_dict, config_with
+from corpus_tools.config import ConfigBase, config_with
 from corpus_tools.pipeline import OpenCorpus
+from workbench.state.editing import SETTINGS, Editing
+from workbench.state.effects import Effects
+from workbench.state.picks import fragment_at
 from workbench.state.stages import Request, Result
 
-__all__ = ["SETTINGS", "STATUSES", "Session", "default_config"]
+__all__ = ["STATUSES", "Session"]
 
 STATUSES = ("empty", "opening", "ready", "error")
 """empty: no corpus; opening: one is being read; ready: a corpus is open; error: it could not be opened."""
 
-SETTINGS = {
-    "method": "selection__method",
-    "weighting": "blend__weighting",
-    "shape": "blend__shape",
-    "overlap_s": "blend__overlap_s",
-    "rule": "blend__rule",
-    "mesh": "deform__mesh",
-    "deformer": "deform__deformer",
-}
-"""Parameters of a session that are values of the config, and where they stand in it."""
 
-
-def default_config() -> ConfigBase:
-    """Return the config in which every value is the default."""
-    return config_from_dict({})
-
-
-class Session(param.Parameterized):
+class Session(Editing):
     """Corpus, sentence, settings and result of one browser tab.
 
     Parameters are watched by the views; results arrive through :meth:`accept`, which refuses what belongs to
@@ -47,49 +35,17 @@ class Session(param.Parameterized):
     trouble = param.String(default="", doc="Why a corpus could not be opened; empty when all is well.")
     message = param.String(default="", doc="Why the sentence cannot be spoken so; empty when it can.")
 
-    sentence = param.String(default="", doc="Recording whose sentence is spoken.")
-    held_out = param.Boolean(default=True, doc="Keep that recording out of the inventory.")
-    method = param.String(default="viterbi")
-    weighting = param.String(default="smootherstep")
-    shape = param.Number(default=0.0, bounds=(-1.0, 1.0))
-    overlap_s = param.Number(default=0.12, bounds=(0.0, 0.5))
-    rule = param.Selector(default="shared-phone", objects=["shared-phone", "paper"])
-    mesh = param.String(default="base")
-    deformer = param.String(default="rbf")
-
     theme = param.Selector(default="light", objects=["light", "dark"])
     selected = param.Integer(default=0, bounds=(0, None), doc="Index of the selected fragment.")
     working = param.Boolean(default=False, doc="A result is being computed.")
     result = param.ClassSelector(class_=Result, allow_None=True, default=None)
+    effects = param.ClassSelector(class_=Effects, allow_None=True, default=None, doc="Of every g(u).")
+    other = param.ClassSelector(class_=Result, allow_None=True, default=None, doc="Of setting A, if another.")
 
     def __init__(self, base: ConfigBase | None = None, **values: Any) -> None:
-        self._base = base or default_config()
         self._accepted = 0
-        super().__init__(**{**self._from_config(self._base), **values})
-
-    @staticmethod
-    def _from_config(config: ConfigBase) -> dict[str, Any]:
-        found = {}
-        for name, place in SETTINGS.items():
-            part, _, key = place.partition("__")
-            found[name] = getattr(getattr(config, part), key)
-        return found
-
-    @property
-    def config(self) -> ConfigBase:
-        """The config of the present settings.
-
-        Raises
-        ------
-        ConfigError
-            A value is out of range.
-        """
-        return config_with(self._base, **{place: getattr(self, n) for n, place in SETTINGS.items()})
-
-    def load_config(self, config: ConfigBase) -> None:
-        """Take over every value of a config, also those that have no parameter here."""
-        self._base = config
-        self.param.update(**self._from_config(config))
+        self._place = 0
+        super().__init__(base, **values)
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -103,10 +59,21 @@ class Session(param.Parameterized):
         return str(self.corpus.utterance(name).text)
 
     def request(self) -> Request | None:
-        """Return what is to be computed now, or None without corpus or sentence."""
-        if self.corpus is None or not self.sentence:
+        """Return what is to be computed now, or None without corpus or target."""
+        kind, what = self.target
+        if self.corpus is None or not what:
             return None
-        return Request(self.corpus, self.sentence, self.config, self.held_out)
+        if kind == "text":
+            return Request(self.corpus, "", self.config, self.held_out, what)
+        return Request(self.corpus, what, self.config, self.held_out)
+
+    def request_of_a(self) -> Request | None:
+        """Return what the setting that is *not* shown would speak now; None when there is no other."""
+        now = self.request()
+        if now is None or not self.difference:
+            return None
+        values = self.other_settings
+        return replace(now, config=config_with(self._base, **{SETTINGS[n]: v for n, v in values.items()}))
 
     def begin_opening(self, folder: str) -> None:
         """Show that a corpus is being read; what is open stays until the new one is there."""
@@ -116,6 +83,7 @@ class Session(param.Parameterized):
         """Take over an opened corpus and pick a sentence: the given one, or the first of the corpus."""
         first = sentence or corpus.names[0]
         corpus.utterance(first)
+        self._pins_of, self._place = {}, 0
         self.param.update(
             corpus=corpus,
             status="ready",
@@ -125,8 +93,13 @@ class Session(param.Parameterized):
             message="",
             result=None,
             selected=0,
+            options=None,
+            target_kind="recording",
             sentence=first,
+            pins=(),
+            bans=(),
         )
+        self.begin_history()
 
     def opening_failed(self, why: str) -> None:
         """Show why a corpus could not be opened; one that is open stays."""
@@ -168,9 +141,21 @@ class Session(param.Parameterized):
         if number <= self._accepted or now is None or not now.same_target(result.request):
             return False
         self._accepted = number
-        n = len(result.selection.chosen)
-        self.param.update(result=result, selected=min(self.selected, n - 1), message="")
+        if self.result is None or not self.result.request.same_target(result.request):
+            self._place = 0
+        selected = fragment_at(result, self._place)
+        self.param.update(result=result, selected=selected, message="")
+        if self.side == "B" and result.request.config == now.config:
+            self.history.settle(max(result.ratios, default=0.0))
+            self.edits += 1
         return True
+
+    def select(self, index: int) -> None:
+        """Select a fragment of the result; its place stays selected when other units come to speak it."""
+        if self.result is None or not 0 <= index < len(self.result.selection.chosen):
+            return
+        self._place = self.result.selection.chosen[index].first
+        self.param.update(selected=index, options=None)
 
     def refuse(self, number: int, message: str) -> bool:
         """Show why a request could not be computed; the last good result stays. False when it is old news."""

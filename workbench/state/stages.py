@@ -23,6 +23,7 @@ from corpus_tools.pipeline import (
     prepare_head,
     select_units,
 )
+from corpus_tools.synthesis import AlignedPieces, blend_pieces, narrowed, peak_ratios
 
 __all__ = ["Request", "Result", "Stages"]
 
@@ -41,16 +42,24 @@ class Request:
     config : config
     held_out : bool
         Keep the recording of the sentence out of the inventory.
+    text : str
+        Words that are spoken instead of a recording's sentence.
     """
 
     corpus: OpenCorpus
     sentence: str
     config: ConfigBase
     held_out: bool = True
+    text: str = ""
+
+    @property
+    def exclude(self) -> tuple[str, ...]:
+        """Recordings kept out of the inventory."""
+        return (self.sentence,) if self.held_out and not self.text else ()
 
     def same_target(self, other: Request) -> bool:
         """Tell whether both speak the same sentence of the same corpus."""
-        return self.corpus is other.corpus and self.sentence == other.sentence
+        return self.corpus is other.corpus and (self.sentence, self.text) == (other.sentence, other.text)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,9 +71,12 @@ class Result:
     request : Request
     utterance : Utterance
     selection : Selection
+    pieces : AlignedPieces
     trajectory : Trajectory
     head : Head
     animation : Animation
+    ratios : tuple of float
+        Peak acceleration of each join over the natural 95th percentile, before the lips are closed.
     ran : tuple of str
         Stages that were computed for this result; the others were still valid.
     elapsed_ms : float
@@ -74,9 +86,11 @@ class Result:
     request: Request
     utterance: Utterance
     selection: Selection
+    pieces: AlignedPieces
     trajectory: Trajectory
     head: Head
     animation: Animation
+    ratios: tuple[float, ...]
     ran: tuple[str, ...]
     elapsed_ms: float
 
@@ -95,6 +109,13 @@ class Result:
 
 def _values(config: ConfigBase, *names: str) -> tuple[str, ...]:
     return tuple(getattr(config, n).model_dump_json() for n in names)
+
+
+def _ratios(corpus: OpenCorpus, pieces: AlignedPieces, config: ConfigBase) -> tuple[float, ...]:
+    natural = corpus.natural
+    settings = config.blend.model_dump()
+    blended = blend_pieces(narrowed(pieces, natural), **settings)
+    return tuple(float(r) for r in peak_ratios(blended, natural))
 
 
 class Stages:
@@ -148,10 +169,10 @@ class Stages:
         corpus, config = request.corpus, request.config
         ran: list[str] = []
         started = time.perf_counter()
+        exclude = request.exclude
         utterance = corpus.utterance(request.sentence)
-        exclude = (request.sentence,) if request.held_out else ()
-        root = (corpus, request.sentence, exclude)
-        key = (*root, *_values(config, "selection"))
+        root = (corpus, request.sentence, request.text, exclude)
+        key = (*root, *_values(config, "selection", "overrides"))
         selection = self._stage("select", key, lambda: select_units(corpus, utterance, config, exclude), ran)
         check()
         key = (*key, *_values(config, "alignment"))
@@ -163,5 +184,7 @@ class Stages:
         head_key = (corpus, *_values(config, "retarget", "deform"))
         head = self._stage("head", head_key, lambda: prepare_head(corpus, config.deform.mesh, config), ran)
         animation = self._stage("animate", (key, head_key), lambda: animate(head, trajectory), ran)
+        ratios = self._stage("measure", key, lambda: _ratios(corpus, pieces, config), [])
         elapsed_ms = 1000 * (time.perf_counter() - started)
-        return Result(request, utterance, selection, trajectory, head, animation, tuple(ran), elapsed_ms)
+        parts = (utterance, selection, pieces, trajectory, head, animation, ratios)
+        return Result(request, *parts, tuple(ran), elapsed_ms)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from corpus_tools.pipeline import write_motion
-from workbench.actions import export_config, replay_command
+from workbench.actions import ban_unit, export_config, replay_command, swap_unit
 from workbench.state import Session, Stages
 
 
@@ -17,7 +17,15 @@ def test_the_exported_line_makes_the_same_bytes_of_motion(opened, corpus_folder,
     session = Session(folder=str(corpus_folder))
     session.opened(opened)
     session.param.update(weighting="raised-cosine", shape=0.3, overlap_s=0.09, mesh="female")
-    result = Stages().run(session.request())
+    stages = Stages()
+    session.accept(1, stages.run(session.request()))
+    plain = [c.unit.key for c in session.result.selection.chosen]
+    session.select(len(plain) // 2)
+    ban_unit(session)
+    session.accept(2, stages.run(session.request()))
+    swap_unit(session, 1)
+    result = stages.run(session.request())
+    assert [c.unit.key for c in result.selection.chosen] != plain
     path, _ = export_config(session, tmp_path / "tuned.toml")
     line = replay_command(session, path)
     words = shlex.split(line)

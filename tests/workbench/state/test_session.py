@@ -42,13 +42,15 @@ def test_every_setting_reaches_the_config(opened):
         "rule": "paper",
         "mesh": "male",
         "deformer": "rbf",
+        "pins": ("0-2=time02:0-2",),
+        "bans": ("time03", "time04:1-3"),
     }
     assert set(values) == set(SETTINGS)
     session.param.update(**values)
     config = session.config.values()
     for name, place in SETTINGS.items():
         part, _, key = place.partition("__")
-        assert config[part][key] == values[name]
+        assert config[part][key] == (list(values[name]) if name in ("pins", "bans") else values[name])
     other = Session()
     other.load_config(session.config)
     assert other.config == session.config

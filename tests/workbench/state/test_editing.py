@@ -1,0 +1,226 @@
+"""Pins, bans, other units, undo, two settings to compare: without a browser."""
+
+import pytest
+
+from corpus_tools.core import NoUnitError
+from workbench.actions import ban_unit, heard, options_shown, swap_to, swap_unit, toggle_pin, unban
+from workbench.state import (
+    EDITABLE,
+    OVERLAPS_S,
+    Session,
+    Stages,
+    aperture_band,
+    aperture_curves,
+    compute_effects,
+    score,
+    stand_ins,
+)
+
+
+class Visit:
+    """A session whose results are computed at once."""
+
+    def __init__(self, opened):
+        self.session, self.stages, self.number = Session(), Stages(keep=8), 0
+        self.session.opened(opened)
+        self.run()
+
+    def run(self):
+        self.number += 1
+        assert self.session.accept(self.number, self.stages.run(self.session.request()))
+        return self.session.result
+
+    @property
+    def spoken(self):
+        return [c.unit.key for c in self.session.result.selection.chosen]
+
+
+@pytest.fixture
+def visit(opened):
+    made = Visit(opened)
+    made.session.sentence = opened.names[4]
+    made.run()
+    return made
+
+
+def place_with_options(visit):
+    result = visit.session.result
+    index = next(i for i, c in enumerate(result.selection.chosen) if len(c.rejected) > 1)
+    visit.session.select(index)
+    return options_shown(visit.session)
+
+
+def test_another_unit_speaks_the_place_and_undo_brings_the_first_back(visit):
+    options, before = place_with_options(visit), visit.spoken
+    assert swap_unit(visit.session, 1)
+    visit.run()
+    wanted = options.options[1]
+    assert any(
+        c.unit.recording == wanted.unit.recording and c.first <= wanted.first and wanted.last <= c.last
+        for c in visit.session.result.selection.chosen
+    )
+    chosen = visit.session.result.selection.chosen[visit.session.selected]
+    assert chosen.first <= wanted.first < chosen.last
+    assert visit.session.undo()
+    visit.run()
+    assert visit.spoken == before
+    assert visit.session.redo()
+    visit.run()
+    assert visit.session.pins == (wanted.pin,)
+
+
+def test_going_through_the_options_meets_each_once_and_comes_round(visit):
+    options = place_with_options(visit)
+    met = []
+    for _ in options.options:
+        swap_unit(visit.session, 1)
+        visit.run()
+        shown = options_shown(visit.session)
+        assert [o.unit for o in shown.options] == [o.unit for o in options.options]
+        met.append(shown.at)
+    assert sorted(met) == list(range(len(options.options)))
+    assert met[-1] == 0
+    assert not swap_to(visit.session, 99)
+
+
+def test_a_pin_holds_its_place_and_comes_off_again(visit):
+    place_with_options(visit)
+    toggle_pin(visit.session)
+    (pin,) = visit.session.pins
+    visit.session.method = "greedy"
+    visit.run()
+    assert score(visit.session.result)["fragments"][visit.session.selected]["pinned"]
+    unit = visit.session.result.selection.chosen[visit.session.selected].unit
+    assert unit.recording == pin.split("=")[1].split(":")[0]
+    toggle_pin(visit.session)
+    assert visit.session.pins == ()
+
+
+def test_a_banned_unit_is_gone_until_it_is_allowed(visit):
+    place_with_options(visit)
+    banned = visit.spoken[visit.session.selected]
+    assert ban_unit(visit.session)
+    visit.run()
+    assert banned not in visit.spoken
+    assert unban(visit.session, banned)
+    assert not unban(visit.session, banned)
+    visit.run()
+    assert banned in visit.spoken
+
+
+def test_pins_belong_to_their_sentence_and_come_back_with_it(visit):
+    session = visit.session
+    place_with_options(visit)
+    toggle_pin(session)
+    pins, here = session.pins, session.sentence
+    session.step_sentence(1)
+    assert session.pins == ()
+    visit.run()
+    session.sentence = here
+    assert session.pins == pins
+    session.undo()
+    session.undo()
+    assert (session.sentence, session.pins) == (here, pins)
+
+
+def test_every_edit_can_be_undone(visit):
+    session = visit.session
+    start = session.values
+    place_with_options(visit)
+    for act in (lambda: swap_unit(session, 1), lambda: ban_unit(session), lambda: session.step_sentence(1)):
+        act()
+        visit.run()
+    session.param.update(shape=0.5, mesh="female", held_out=False)
+    while session.undo():
+        pass
+    assert session.values["pins"] == ()
+    assert set(start) == set(EDITABLE)
+    assert session.sentence == session.sentences[0]
+    while session.redo():
+        pass
+    assert (session.shape, session.mesh, session.held_out) == (0.5, "female", False)
+
+
+def test_setting_a_and_b_are_swapped_and_their_difference_is_told(visit):
+    session = visit.session
+    assert session.difference == ""
+    assert not session.swap_sides()
+    session.param.update(weighting="linear", overlap_s=0.04)
+    assert session.difference == "g(u) smootherstep → linear, overlap 120 ms → 40 ms"
+    assert session.swap_sides()
+    assert (session.side, session.weighting, session.overlap_s) == ("A", "smootherstep", 0.12)
+    told = session.difference
+    assert session.swap_sides()
+    assert (session.side, session.weighting, session.overlap_s) == ("B", "linear", 0.04)
+    assert session.difference == told
+    assert session.undo()
+    assert session.weighting == "smootherstep"
+    session.redo()
+    session.keep_as_a()
+    assert session.difference == ""
+
+
+def test_an_edit_of_a_becomes_b(visit):
+    session = visit.session
+    session.weighting = "linear"
+    session.swap_sides()
+    session.shape = 0.3
+    assert (session.side, session.weighting) == ("B", "smootherstep")
+    assert session.undo()
+    assert session.weighting == "linear"
+
+
+def test_the_history_tells_what_each_state_does(visit):
+    visit.session.overlap_s = 0.02
+    visit.run()
+    effects = [e.effect for e in visit.session.history.entries]
+    assert effects[-1] == max(visit.session.result.ratios)
+    assert effects[-1] > effects[-2]
+
+
+def test_every_curve_is_measured_at_every_overlap_as_the_blend_itself_is(visit):
+    session = visit.session
+    session.overlap_s = OVERLAPS_S[3]
+    effects = compute_effects(visit.run())
+    curve = next(c for c in effects.curves if c.weighting == session.weighting)
+    assert curve.ratios[3] == pytest.approx(session.result.ratios)
+    name, overlap_s, ratio = effects.best(0)
+    assert ratio == min(c.ratios[:, 0].min() for c in effects.curves)
+    session.param.update(weighting=name, overlap_s=overlap_s)
+    result = visit.run()
+    assert effects.fits(result)
+    assert result.ratios[0] == pytest.approx(ratio)
+    session.rule = "paper"
+    assert not effects.fits(visit.run())
+
+
+def test_a_fragment_is_heard_from_its_own_recording(visit):
+    options = place_with_options(visit)
+    for at, option in enumerate(options.options):
+        sound = heard(visit.session, at)
+        phones = visit.session.corpus.utterance(option.unit.recording).phones.intervals
+        spoken = phones[option.unit.last].end_s - phones[option.unit.first].start_s
+        assert spoken <= sound.duration_s + 0.01 <= spoken + 0.12
+
+
+def test_curves_hold_the_pieces_the_other_setting_and_the_natural_range(visit):
+    session, other = visit.session, visit.session.result
+    session.overlap_s = 0.02
+    curves = aperture_curves(visit.run(), other)
+    assert len(curves["pieces"]) == len(session.result.selection.chosen)
+    assert len(curves["other"]) == len(curves["blend"])
+    assert curves["other"] != curves["blend"]
+    band = aperture_band(session.result)
+    assert len(band["times"]) == len(band["low"]) == len(band["high"]) > 0
+
+
+def test_what_stood_in_is_told(visit):
+    session = visit.session
+    used = {c.unit.recording for c in session.result.selection.chosen}
+    assert stand_ins(session.result) == [
+        line for line in stand_ins(session.result) if any(name in line for name in used)
+    ]
+    every = tuple(n for n in session.sentences if n != session.sentence)
+    session.bans = every
+    with pytest.raises(NoUnitError):
+        visit.stages.run(session.request())

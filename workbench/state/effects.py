@@ -1,0 +1,77 @@
+"""What the effect plot and the natural band show; computed after a result, so that nothing waits for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from corpus_tools.core import FloatArray
+from corpus_tools.fragments import natural_band
+from corpus_tools.synthesis import WEIGHTINGS, EffectCurve, effect_curves, narrowed
+from workbench.state.signals import Signal
+from workbench.state.stages import Request, Result
+
+__all__ = ["OVERLAPS_S", "Effects", "blend_settings", "compute_effects", "signal_band"]
+
+OVERLAPS_S = (0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.27, 0.3)
+"""Overlaps at which every weighting function is measured, s."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Effects:
+    """The measure at every join for every curve.
+
+    Attributes
+    ----------
+    result : Result
+        What it belongs to: it holds for any g(u) and overlap of the same pieces.
+    curves : tuple of EffectCurve
+    """
+
+    result: Result
+    curves: tuple[EffectCurve, ...]
+
+    def fits(self, result: Result) -> bool:
+        """Tell whether the curves are those of another result too."""
+        mine, other = blend_settings(self.result.request), blend_settings(result.request)
+        return self.result.pieces is result.pieces and mine == other
+
+    def best(self, join: int) -> tuple[str, float, float] | None:
+        """Return (weighting, overlap s, ratio) of the lowest measure at a join; None without any."""
+        found = [
+            (float(row[join]), float(overlap), curve.weighting)
+            for curve in self.curves
+            for overlap, row in zip(curve.overlaps_s, curve.ratios, strict=True)
+            if join < len(row) and np.isfinite(row[join])
+        ]
+        if not found:
+            return None
+        ratio, overlap, name = min(found)
+        return name, overlap, ratio
+
+
+def blend_settings(request: Request) -> dict[str, object]:
+    """Return the blend settings that are the same for every curve of the effect plot."""
+    own = {"weighting", "shape", "overlap_s", "curve_weights"}
+    return dict(request.config.blend.model_dump(exclude=own))
+
+
+def compute_effects(result: Result) -> Effects:
+    """Measure every weighting function at every overlap on the pieces of a result."""
+    natural = result.request.corpus.natural
+    pieces = narrowed(result.pieces, natural)
+    names: dict[str, dict[str, Any]] = {name: {} for name in WEIGHTINGS if name != "user"}
+    curves = effect_curves(pieces, natural, names, OVERLAPS_S, **blend_settings(result.request))
+    return Effects(result, curves)
+
+
+def signal_band(result: Result, signal: Signal) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return (times s, low, high): what the speaker does in the same diphones of the other recordings."""
+    corpus = result.request.corpus
+    values = [
+        signal.measure(np.asarray(r.capture.positions_mm), r.capture.names)
+        for r in corpus.inventory.recordings
+    ]
+    return natural_band(corpus.inventory, result.utterance.phones, values, result.request.exclude)
