@@ -75,7 +75,7 @@ def motion_problem(
         The silence of the phone set.
     """
     points = np.asarray(capture.positions_mm)[:, list(columns)]
-    seen = np.isfinite(points).all(axis=2)
+    seen: BoolArray = np.asarray(np.isfinite(points).all(axis=2))
     if not (seen.sum(axis=1) >= 3).any():
         return "no frame shows 3 of the reference markers together, so its head motion cannot be removed."
     if not _spread_out(points, seen).any():
