@@ -5,6 +5,7 @@ from corpus_tools.core.capture import Audio, Capture, FrameFlag
 from corpus_tools.core.errors import (
     ConfigError,
     CorpusError,
+    EngineError,
     InputError,
     LabelError,
     MeshError,
@@ -34,6 +35,7 @@ __all__ = [
     "ConfigError",
     "CorpusError",
     "Costs",
+    "EngineError",
     "FloatArray",
     "Fragment",
     "FrameFlag",

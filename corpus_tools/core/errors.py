@@ -11,6 +11,7 @@
     │   └── ConfigError           configs: unknown keys, values out of range
     ├── OutputError               a folder or file that cannot be written
     ├── MissingExtraError         an optional package or program that is not installed
+    ├── EngineError               a speech engine that died or did not answer
     └── SynthesisError            a result of the method: no unit covers a diphone, ...
         └── NoUnitError           carries the missing diphones
 """
@@ -23,6 +24,7 @@ from collections.abc import Iterable
 __all__ = [
     "ConfigError",
     "CorpusError",
+    "EngineError",
     "InputError",
     "LabelError",
     "MeshError",
@@ -70,6 +72,10 @@ class OutputError(WorkbenchError):
 
 class MissingExtraError(WorkbenchError):
     """An optional package or program is needed and not installed."""
+
+
+class EngineError(WorkbenchError):
+    """A speech engine that died, or did not answer in time."""
 
 
 class SynthesisError(WorkbenchError):

@@ -44,6 +44,11 @@ BREAKS = {
         "pyvista and VTK only in render",
     ),
     "praatio elsewhere": ("corpus_tools/speech/__init__.py", "import praatio", "praatio in one module only"),
+    "the voice in our process": (
+        "corpus_tools/speech/engines/espeak.py",
+        "import espeakng_loader",
+        "only in its child process",
+    ),
     "simulator and synthesiser": (
         "corpus_tools/demo/__init__.py",
         "import corpus_tools.synthesis",
