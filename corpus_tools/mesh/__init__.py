@@ -1,24 +1,38 @@
 """Meshes: the bundled heads, mesh files, lips, jaw, and the deformers that tie vertices to markers."""
 
+from corpus_tools.mesh.attachment import Attachment
+from corpus_tools.mesh.binding import Binding, ControlSurface, LinearBinding, PatchBinding
 from corpus_tools.mesh.bundle import CHARACTERS, bundled_head, bundled_morph_mm, bundled_morphs
-from corpus_tools.mesh.deform import DEFORMERS, Binding, bind_rbf
+from corpus_tools.mesh.chart import Chart, open_mouth_chart
+from corpus_tools.mesh.deform import ATTACHMENTS, DEFORMERS, bind_bid, bind_linear, bind_rbf
+from corpus_tools.mesh.falloff import STILL_MARKERS
 from corpus_tools.mesh.files import mesh_by_name_or_file, read_mesh, write_mesh
 from corpus_tools.mesh.jaw import JAW_PARTS, jaw_hinge_mm, jaw_motion
 from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, close_lips, lower_side, signed_lip_aperture_mm
-from corpus_tools.mesh.rbf import DISPLACEMENT_KERNELS, STILL_MARKERS, displacement_basis
+from corpus_tools.mesh.patches import CONTROL_POINTS
+from corpus_tools.mesh.rbf import DISPLACEMENT_KERNELS, displacement_basis
 from corpus_tools.mesh.regions import SkinRegion, skin_regions
 from corpus_tools.mesh.topology import edge_loop, edges_of, geodesic_mm, triangles, vertex_normals
 
 __all__ = [
+    "ATTACHMENTS",
     "CHARACTERS",
+    "CONTROL_POINTS",
     "DEFORMERS",
     "DISPLACEMENT_KERNELS",
     "JAW_PARTS",
     "LOWER_LIP",
     "STILL_MARKERS",
     "UPPER_LIP",
+    "Attachment",
     "Binding",
+    "Chart",
+    "ControlSurface",
+    "LinearBinding",
+    "PatchBinding",
     "SkinRegion",
+    "bind_bid",
+    "bind_linear",
     "bind_rbf",
     "bundled_head",
     "bundled_morph_mm",
@@ -32,6 +46,7 @@ __all__ = [
     "jaw_motion",
     "lower_side",
     "mesh_by_name_or_file",
+    "open_mouth_chart",
     "read_mesh",
     "signed_lip_aperture_mm",
     "skin_regions",

@@ -1,109 +1,85 @@
-"""From markers to the vertices of a mesh: deformers by name, and what binds a mesh to its markers."""
+"""From markers to the vertices of a mesh: deformers by name."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
+from scipy.sparse import csr_array
 
-from corpus_tools.core import FloatArray, Mesh, MeshError, Registry, frozen
-from corpus_tools.mesh.jaw import JAW_PARTS, jaw_motion
+from corpus_tools.core import BoolArray, FloatArray, IntArray, Mesh, MeshError, Registry
+from corpus_tools.mesh.attachment import Attachment, attach, frames_at, nearest_on_patches
+from corpus_tools.mesh.binding import Binding, ControlSurface, LinearBinding, PatchBinding
+from corpus_tools.mesh.chart import Chart, open_mouth_chart
+from corpus_tools.mesh.falloff import STILL_MARKERS, marker_fade, smooth_step
+from corpus_tools.mesh.lips import lip_distances_mm
+from corpus_tools.mesh.patches import linear_net, smooth_net
 from corpus_tools.mesh.rbf import displacement_basis
+from corpus_tools.mesh.regions import SkinRegion, skin_regions
+from corpus_tools.mesh.topology import vertex_normals
 
-__all__ = ["DEFORMERS", "Binding", "bind_rbf"]
+__all__ = ["ATTACHMENTS", "DEFORMERS", "bind_bid", "bind_linear", "bind_rbf"]
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Binding:
-    """How the vertices of a mesh follow its markers (paper A section 6: motion embedded in a target mesh).
-
-    Attributes
-    ----------
-    mesh : Mesh
-    names : tuple of str, n_markers
-    basis : (n_vertices, n_markers) float64
-        Vertex displacement = basis @ marker displacement, per axis; zero on eyes, teeth and tongue.
-    """
-
-    mesh: Mesh
-    names: tuple[str, ...]
-    basis: FloatArray
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", tuple(self.names))
-        object.__setattr__(self, "basis", frozen(self.basis))
-
-    @property
-    def rest_mm(self) -> FloatArray:
-        """Marker positions at rest, (n_markers, 3) mm."""
-        return self.mesh.vertices_mm[[self.mesh.markers[n] for n in self.names]]
-
-    def lip_response(self) -> FloatArray:
-        """Return the aperture of each lip pair per mm that a marker moves up, shape (n_pairs, n_markers)."""
-        pairs = self.mesh.lip_pairs
-        return np.asarray(self.basis[pairs[:, 0]] - self.basis[pairs[:, 1]])
-
-    def rigid(self, targets_mm: npt.ArrayLike) -> dict[str, FloatArray]:
-        """Return the rigid motion of every part that follows the jaw: {part: (n_frames, 4, 4)}, mm."""
-        parts = [p for p in JAW_PARTS if p in self.mesh.part_names]
-        if not parts:
-            return {}
-        motion = jaw_motion(targets_mm, self.mesh, self.names)
-        return {part: motion for part in parts}
-
-    def apply(
-        self, targets_mm: npt.ArrayLike, rigid: Mapping[str, npt.ArrayLike] | None = None
-    ) -> npt.NDArray[np.float32]:
-        """Return the vertices in every frame, (n_frames, n_vertices, 3) float32, mm.
-
-        Parameters
-        ----------
-        targets_mm : (n_frames, n_markers, 3), mm
-            Marker positions on the mesh, in the order of `names`.
-        rigid : mapping of part -> (n_frames, 4, 4), optional
-            Rigid motion of parts; computed from the targets when not given.
-
-        Raises
-        ------
-        MeshError
-            The targets have another number of markers.
-        """
-        targets = np.asarray(targets_mm)
-        if targets.ndim != 3 or targets.shape[1:] != (len(self.names), 3):
-            raise MeshError(
-                f"The targets have shape {targets.shape}; (frames, {len(self.names)}, 3) was expected."
-            )
-        motion = self.rigid(targets) if rigid is None else rigid
-        moving = np.flatnonzero(np.any(self.basis, axis=1))
-        shift = (targets - self.rest_mm).astype(np.float32)
-        n = len(targets)
-        rows = shift.transpose(0, 2, 1).reshape(3 * n, -1) @ self.basis[moving].T.astype(np.float32)
-        out = np.empty((n, self.mesh.n_vertices, 3), np.float32)
-        out[:] = self.mesh.vertices_mm.astype(np.float32)
-        for axis in range(3):
-            out[:, moving, axis] += rows[axis::3]
-        for part, matrices in motion.items():
-            mask = np.flatnonzero(self.mesh.part_mask(part))
-            m = np.asarray(matrices, float)
-            points = self.mesh.vertices_mm[mask] @ m[:, :3, :3].transpose(0, 2, 1) + m[:, None, :3, 3]
-            out[:, mask] = points.astype(np.float32)
-        return out
-
+ATTACHMENTS = ("side", "angle")
+ANGLE_DEG = 60.0
+WALL = (0.24, 0.8)
+"""Depth behind the skin, in widths of the mouth, at which its inside begins to lag and no longer moves."""
 
 DEFORMERS: Registry[Callable[[Mesh, Sequence[str]], Binding]] = Registry("deformer")
 
 
+@DEFORMERS.register("bid")
+def bind_bid(
+    mesh: Mesh, names: Sequence[str], *, attachment: str = "side", angle_deg: float = ANGLE_DEG
+) -> PatchBinding:
+    """Bind a mesh by Bezier induced deformations (paper A section 6, equation 3).
+
+    Parameters
+    ----------
+    mesh : Mesh
+    names : sequence of str
+        Markers, all on the mesh.
+    attachment : str
+        ``"side"``: a vertex may hang on patches of its own lip only, told by distance along the skin (our
+        choice); ``"angle"``: the paper's rule, patches turned by more than `angle_deg` are refused.
+    angle_deg : float, degrees
+
+    Raises
+    ------
+    MeshError
+        A marker has no vertex on the mesh, two share one, or they span no surface.
+    """
+    chart = _chart(mesh, names)
+    return _bind_patches(mesh, names, chart, smooth_net(chart), attachment, angle_deg)
+
+
+@DEFORMERS.register("linear")
+def bind_linear(mesh: Mesh, names: Sequence[str]) -> PatchBinding:
+    """Bind a mesh to flat triangles between its markers, attached as the smooth patches are: a baseline.
+
+    Raises
+    ------
+    MeshError
+        A marker has no vertex on the mesh, two share one, or they span no surface.
+    """
+    chart = _chart(mesh, names)
+    return _bind_patches(mesh, names, chart, linear_net(chart), "side", ANGLE_DEG)
+
+
 @DEFORMERS.register("rbf")
-def bind_rbf(mesh: Mesh, names: Sequence[str]) -> Binding:
-    """Bind a mesh to its markers by direct RBF displacement (:func:`displacement_basis`).
+def bind_rbf(mesh: Mesh, names: Sequence[str]) -> LinearBinding:
+    """Bind a mesh to its markers by direct RBF displacement (:func:`displacement_basis`): a baseline.
 
     Raises
     ------
     MeshError
         A marker has no vertex on the mesh, or two share one.
     """
+    _check_markers(mesh, names)
+    return LinearBinding(mesh, tuple(names), displacement_basis(mesh, names))
+
+
+def _check_markers(mesh: Mesh, names: Sequence[str]) -> None:
     missing = [n for n in names if n not in mesh.markers]
     if missing:
         raise MeshError(
@@ -113,4 +89,72 @@ def bind_rbf(mesh: Mesh, names: Sequence[str]) -> Binding:
     if len(set(vertices)) < len(vertices):
         twice = next(n for i, n in enumerate(names) if vertices[i] in vertices[:i])
         raise MeshError(f"On the mesh '{mesh.name}' the marker '{twice}' shares its vertex with another one.")
-    return Binding(mesh, tuple(names), displacement_basis(mesh, names))
+
+
+def _chart(mesh: Mesh, names: Sequence[str]) -> Chart:
+    _check_markers(mesh, names)
+    return open_mouth_chart(mesh, names)
+
+
+def _bind_patches(
+    mesh: Mesh, names: Sequence[str], chart: Chart, net: csr_array, rule: str, angle_deg: float
+) -> PatchBinding:
+    """Attach every vertex of the skin that the markers reach."""
+    at = np.array([mesh.markers[n] for n in names], np.int64)
+    surface = ControlSurface(chart, net)
+    control = surface.control_mm(mesh.vertices_mm[at])
+    weight = marker_fade(mesh, at[[n not in STILL_MARKERS for n in names]])
+    if "skin" in mesh.part_names:
+        weight[~mesh.part_mask("skin")] = 0.0
+    inside = skin_regions(mesh) == SkinRegion.MOUTH
+    vertices = np.flatnonzero((weight > 0) | inside)
+    if rule == "angle":
+        patch, bary = _by_angle(mesh, vertices, control, angle_deg)
+    else:
+        patch, bary = _by_side(mesh, vertices, control, chart)
+    offset = attach(mesh.vertices_mm[vertices], control, patch, bary)
+    share = weight[vertices]
+    walls = inside[vertices]
+    point = frames_at(control[patch], bary)[0]
+    depth = np.linalg.norm(mesh.vertices_mm[vertices] - point, axis=1)
+    share[walls] = _wall_share(mesh, depth[walls])
+    moves = share > 0
+    return PatchBinding(
+        mesh,
+        tuple(names),
+        surface,
+        Attachment(vertices[moves], patch[moves], bary[moves], offset[moves], share[moves]),
+    )
+
+
+def _wall_share(mesh: Mesh, depth_mm: FloatArray) -> FloatArray:
+    """Return the share of the motion that the inside of the mouth takes part in, by depth behind the skin."""
+    width = float(np.ptp(mesh.vertices_mm[mesh.lip_pairs.ravel(), 0]))
+    near, far = (share * width for share in WALL)
+    return smooth_step((far - depth_mm) / (far - near))
+
+
+def _by_angle(
+    mesh: Mesh, vertices: IntArray, control: FloatArray, angle_deg: float
+) -> tuple[IntArray, FloatArray]:
+    everything: BoolArray = np.ones(len(control), bool)
+    normals = vertex_normals(mesh.vertices_mm, mesh.faces)[vertices]
+    return nearest_on_patches(
+        mesh.vertices_mm[vertices], control, everything, normals=normals, angle_deg=angle_deg
+    )
+
+
+def _by_side(
+    mesh: Mesh, vertices: IntArray, control: FloatArray, chart: Chart
+) -> tuple[IntArray, FloatArray]:
+    """Return the nearest places on patches that do not belong to the other lip."""
+    to_upper, to_lower = (d[vertices] for d in lip_distances_mm(mesh))
+    label = np.sign(np.nan_to_num(to_lower - to_upper, posinf=0.0, neginf=0.0))
+    side = np.repeat(chart.triangle_side, 3)
+    patch, bary = np.zeros(len(vertices), np.int64), np.zeros((len(vertices), 3))
+    for wanted in (-1, 0, 1):
+        rows = np.flatnonzero(label == wanted)
+        if len(rows):
+            allowed = side * wanted >= 0
+            patch[rows], bary[rows] = nearest_on_patches(mesh.vertices_mm[vertices[rows]], control, allowed)
+    return patch, bary

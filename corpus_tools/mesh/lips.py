@@ -86,21 +86,31 @@ def lower_side(mesh: Mesh, hard_mm: float = 4.0) -> FloatArray:
     hard_mm : float, mm
         Within this distance of a lip marker the label is 0 or 1.
     """
-    upper = [mesh.markers[n] for n in UPPER_LIP if n in mesh.markers]
-    lower = [mesh.markers[n] for n in LOWER_LIP if n in mesh.markers]
-    upper += mesh.lip_pairs[:, 0].tolist()
-    lower += mesh.lip_pairs[:, 1].tolist()
-    if not upper or not lower:
+    to_upper, to_lower = lip_distances_mm(mesh)
+    if not np.isfinite(to_upper).any() or not np.isfinite(to_lower).any():
         return np.zeros(mesh.n_vertices)
-    faces = mesh.faces[skin_faces(mesh)]
-    to_upper = geodesic_mm(mesh.vertices_mm, faces, upper)
-    to_lower = geodesic_mm(mesh.vertices_mm, faces, lower)
     reached = np.isfinite(to_upper) & np.isfinite(to_lower)
     difference = np.where(reached, to_upper, 0.0) - np.where(reached, to_lower, 0.0)
     near = np.where(reached, np.minimum(to_upper, to_lower), 0.0)
     width = np.maximum(near - hard_mm, 1e-6)
     u = np.clip(0.5 + 0.5 * difference / width, 0.0, 1.0)
     return np.where(reached, u * u * (3.0 - 2.0 * u), 0.0)
+
+
+def lip_distances_mm(mesh: Mesh) -> tuple[FloatArray, FloatArray]:
+    """Return the distance along the skin to the upper and to the lower lip's markers and lip pairs, mm.
+
+    Infinite where no path leads and, everywhere, for a lip without any.
+    """
+    faces = mesh.faces[skin_faces(mesh)]
+    found = []
+    for column, wanted in enumerate((UPPER_LIP, LOWER_LIP)):
+        start = [mesh.markers[n] for n in wanted if n in mesh.markers]
+        start += mesh.lip_pairs[:, column].tolist()
+        found.append(
+            geodesic_mm(mesh.vertices_mm, faces, start) if start else np.full(mesh.n_vertices, np.inf)
+        )
+    return found[0], found[1]
 
 
 def skin_faces(mesh: Mesh) -> BoolArray:

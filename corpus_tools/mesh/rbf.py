@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from corpus_tools.core import BoolArray, FloatArray, IntArray, Mesh, Registry
-from corpus_tools.mesh.lips import lower_side, skin_faces
-from corpus_tools.mesh.topology import geodesic_mm
+from corpus_tools.mesh.falloff import STILL_MARKERS, marker_fade
+from corpus_tools.mesh.lips import lower_side
 
-__all__ = ["DISPLACEMENT_KERNELS", "STILL_MARKERS", "displacement_basis"]
+__all__ = ["DISPLACEMENT_KERNELS", "displacement_basis"]
 
-STILL_MARKERS = tuple(f"eye{i}" for i in range(8))
-LID_MM = (7.0, 15.0)
-REACH_MM = (32.0, 75.0)
 N_ANCHORS = 80
 
 DISPLACEMENT_KERNELS: Registry[Callable[[FloatArray], FloatArray]] = Registry("displacement kernel")
@@ -47,7 +43,7 @@ def displacement_basis(mesh: Mesh, names: Sequence[str], kernel: str = "thin-pla
     skin = np.flatnonzero(mesh.part_mask("skin")) if "skin" in mesh.part_names else np.arange(mesh.n_vertices)
     moving = np.array([n not in STILL_MARKERS for n in names])
     at = np.array([mesh.markers[n] for n in names])
-    fade = _fade(mesh, at[moving])
+    fade = marker_fade(mesh, at[moving])
     anchors = _anchors(mesh, skin, fade, at[~moving])
     side = lower_side(mesh)
     basis = np.zeros((mesh.n_vertices, len(names)))
@@ -83,27 +79,6 @@ def _interpolation(
     points = v[wanted]
     rows = np.concatenate([phi(cdist(points, sources)), np.ones((len(points), 1)), points], axis=1)
     return np.asarray(rows @ coefficients)
-
-
-def _fade(mesh: Mesh, markers: IntArray) -> FloatArray:
-    """Return 1 near the markers, 0 far from them and on the eyelids, smooth between; 1 at every marker."""
-    faces = mesh.faces[skin_faces(mesh)]
-    near, far = REACH_MM
-    distance = geodesic_mm(mesh.vertices_mm, faces, markers)
-    fade: FloatArray = _step((far - distance) / (far - near))
-    if "eyes" in mesh.part_names:
-        eyes = cKDTree(mesh.vertices_mm[mesh.part_mask("eyes")])
-        low, high = LID_MM
-        to_eyes: FloatArray = np.asarray(eyes.query(mesh.vertices_mm)[0], float)
-        fade = fade * _step((to_eyes - low) / (high - low))
-    own = geodesic_mm(mesh.vertices_mm, faces, markers) < 1e-9
-    return np.where(own, 1.0, fade)
-
-
-def _step(u: FloatArray) -> FloatArray:
-    u = np.clip(np.nan_to_num(u, neginf=0.0, posinf=1.0), 0.0, 1.0)
-    result: FloatArray = u * u * (3.0 - 2.0 * u)
-    return result
 
 
 def _anchors(mesh: Mesh, skin: IntArray, fade: FloatArray, still: IntArray) -> IntArray:

@@ -124,7 +124,7 @@ def measure_widget(browser: Any, n_changes: int = 25) -> dict[str, Any]:
     import pyvista as pv
 
     surface = pv.PolyData.from_regular_faces(head.vertices_mm, head.faces)
-    actor = surface_actor("head", surface, basis=binding.basis, color="#d9a78b")
+    actor = surface_actor("head", surface, basis=binding.response(range(head.n_vertices)), color="#d9a78b")
     made: list[tuple[Any, Any]] = []
 
     def page() -> Any:

@@ -31,7 +31,7 @@ def head_actors(head: Head) -> list[dict[str, Any]]:
     for part in head.mesh.part_names:
         surface = part_surface(head.mesh, part)
         used = np.asarray(surface.point_data["vertex"])
-        basis = np.asarray(head.binding.basis)[used]
+        basis = head.binding.response(used)
         style: dict[str, Any] = dict(PART_STYLES.get(part, _OTHER))
         if "colour" in surface.point_data:
             style["colours"] = np.asarray(surface.point_data["colour"])

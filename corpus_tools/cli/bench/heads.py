@@ -17,7 +17,7 @@ __all__ = ["measure_deform", "measure_retarget"]
 def measure_deform(ground: Ground) -> list[Row]:
     """Measure the deformer of the config on a whole utterance."""
     head, animation = ground.head, ground.animation
-    basis = np.asarray(head.binding.basis, dtype=np.float64)
+    basis = head.binding.response(np.arange(head.mesh.n_vertices))
     rest = head.mesh.vertices_mm
     shift = np.asarray(animation.targets_mm) - rest[[head.mesh.markers[n] for n in head.names]]
 
