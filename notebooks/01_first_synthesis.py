@@ -124,7 +124,7 @@ pd.DataFrame(
 # %%
 rest_mm = head.mesh.vertices_mm[[head.mesh.markers[name] for name in head.names]]
 view = MeshView(session="first", height=420, sizing_mode="stretch_width")
-view.show_actors(head_actors(head), camera=head_camera(head.mesh))
+view.show_actors(head_actors(head.mesh, head.binding), camera=head_camera(head.mesh))
 
 
 def show(motion: Animation) -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from corpus_tools.config import load_config
 from corpus_tools.demo import simulate_corpus
+from workbench.actions import options_shown
 from workbench.apps.serving import Options, Workbench, free_port
 
 
@@ -125,7 +126,8 @@ def test_a_click_and_a_key_select_a_fragment(browser_page, served):
     assert session.selected == 1
     browser_page.keyboard.press("j")
     browser_page.get_by_text(re.compile("^Fragment 1 of")).wait_for()
-    chosen = browser_page.get_by_role("option", selected=True)
+    fragments = browser_page.get_by_role("listbox", name="Chosen fragments")
+    chosen = fragments.get_by_role("option", selected=True)
     assert chosen.inner_text().startswith("1: ")
 
 
@@ -178,7 +180,7 @@ def test_export_equals_what_the_page_shows(browser_page, served):
     until(browser_page, lambda: session.shape < -0.3)
     target = served[2] / "exported.toml"
     browser_page.get_by_label("Config file").fill(str(target))
-    browser_page.get_by_role("button", name="Export config").click()
+    browser_page.get_by_role("button", name="Export").click()
     browser_page.get_by_text("Config written").wait_for()
     assert load_config(target).values() == session.config.values()
     assert load_config(target).blend.shape == session.shape
@@ -212,7 +214,7 @@ def test_the_frame_keeps_its_sizes_and_nothing_is_clipped(browser_page, served, 
     assert boxes[".inspector"]["x"] + boxes[".inspector"]["width"] == width
     assert boxes[".status"]["y"] + boxes[".status"]["height"] == 900
     foot = browser_page.locator(".inspector > .foot").bounding_box()
-    button = browser_page.get_by_role("button", name="Export config").bounding_box()
+    button = browser_page.get_by_role("button", name="Export").bounding_box()
     assert button["y"] + button["height"] <= foot["y"] + foot["height"] <= 876
     for header in browser_page.locator(".card > header:visible").all():
         assert header.evaluate("e => e.scrollWidth <= e.clientWidth")
@@ -227,3 +229,60 @@ def test_a_wrong_folder_is_said_where_it_was_typed(browser_page, served):
     browser_page.locator(".start .notice.err", has_text="corpus.toml").wait_for()
     browser_page.get_by_role("button", name="Back to the open corpus").click()
     lane(browser_page).wait_for()
+
+
+def test_the_keys_of_a_fragment_swap_pin_ban_undo_and_hear(browser_page, served):
+    session = drawn(browser_page, served)
+    result = session.result
+    index = next(i for i, c in enumerate(result.selection.chosen) if len(c.rejected) > 1)
+    first = result.selection.chosen[index].unit
+    for _ in range(index):
+        browser_page.keyboard.press("l")
+    until(browser_page, lambda: session.selected == index)
+    wanted = options_shown(session).options[1]
+    browser_page.keyboard.press("Alt+ArrowDown")
+    until(browser_page, lambda: session.pins == (wanted.pin,))
+    settled(browser_page, session)
+    row = browser_page.locator('tr.now[data-action="swap"]')
+    row.get_by_text(wanted.unit.recording, exact=True).wait_for()
+    row.focus()
+    row.press("ArrowUp")
+    until(browser_page, lambda: session.pins and session.pins != (wanted.pin,))
+    settled(browser_page, session)
+    browser_page.keyboard.press("b")
+    until(browser_page, lambda: session.bans == (first.key,))
+    browser_page.get_by_role("button", name="Allow again").wait_for()
+    browser_page.keyboard.press("k")
+    until(browser_page, lambda: len(session.pins) == 1)
+    for _ in range(4):
+        before = session.edits
+        browser_page.keyboard.press("Control+z")
+        until(browser_page, lambda n=before: session.edits > n)
+    until(browser_page, lambda: (session.pins, session.bans) == ((), ()))
+    settled(browser_page, session)
+    assert session.result.selection.chosen[index].unit == first
+    browser_page.keyboard.press("h")
+    until(browser_page, lambda: transport(browser_page).evaluate("e => e.vsw.sound.heard === 1"))
+    browser_page.keyboard.press("p")
+    until(browser_page, lambda: transport(browser_page).evaluate("e => e.vsw.clock.t > 0"))
+
+
+def test_two_settings_are_compared_and_the_history_goes_back(browser_page, served):
+    session = drawn(browser_page, served)
+    browser_page.keyboard.press("1")
+    sides = browser_page.get_by_role("group", name="Setting shown")
+    sides.wait_for()
+    until(browser_page, lambda: session.other is not None)
+    browser_page.keyboard.press("x")
+    until(browser_page, lambda: (session.side, session.weighting) == ("A", "smootherstep"))
+    sides.get_by_role("button", name="B").click()
+    until(browser_page, lambda: (session.side, session.weighting) == ("B", "linear"))
+    states = browser_page.get_by_role("listbox", name="States of this session")
+    states.get_by_role("option").last.click()
+    until(browser_page, lambda: session.weighting == "smootherstep")
+    browser_page.keyboard.press("Control+y")
+    until(browser_page, lambda: session.weighting == "linear")
+
+
+def transport(tab):
+    return tab.locator(".vsw-transport").first

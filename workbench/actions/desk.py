@@ -115,6 +115,7 @@ class Desk:
             return
         if request is None:
             self._results.cancel()
+            self.session.message = ""
             return
         other_target = any(e.name in ("corpus", "sentence", "text", "target_kind") for e in events)
         self.session.working = True
@@ -157,7 +158,7 @@ class Desk:
         self._on_export = done
         corpus = self.session.corpus
         if corpus is None or self.session.request() is None:
-            done("err", "There is nothing to export yet: open a corpus and pick a sentence first.")
+            done("err", "There is nothing to export yet: open a corpus, and pick or type a sentence first.")
             return
 
         def work(job: Job) -> Path:

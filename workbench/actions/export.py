@@ -27,10 +27,15 @@ def suggested_path(folder: Path, stem: str) -> Path:
 
 def replay_command(session: Session, path: str | Path) -> str:
     """Return the line that makes the same motion in a shell, quoted where needed."""
-    parts = ["corpus-tools", "synth", session.folder or "CORPUS", "--utterance", session.sentence]
-    if not session.held_out:
-        parts.append("--include-self")
-    parts += ["--config", str(path), "--out", f"{session.sentence}_out"]
+    kind, what = session.target
+    parts = ["corpus-tools", "synth", session.folder or "CORPUS"]
+    if kind == "text":
+        parts += [f"--text={what}"]
+    else:
+        parts += ["--utterance", what]
+        if not session.held_out:
+            parts.append("--include-self")
+    parts += ["--config", str(path), "--out", "text_out" if kind == "text" else f"{what}_out"]
     return shlex.join(parts)
 
 

@@ -47,7 +47,7 @@ def toggle_pin(session: Session) -> bool:
         return False
     chosen = result.selection.chosen[session.selected]
     if pin_at(session.pins, chosen.first, chosen.last):
-        session.pins = without_pin(session.pins, chosen.first, chosen.last)
+        session.param.update(pins=without_pin(session.pins, chosen.first, chosen.last), options=None)
     else:
         session.pins = with_pin(session.pins, options_of(result, session.selected).options[0])
     return True

@@ -9,7 +9,7 @@ from typing import Any
 
 import panel as pn
 
-from workbench.actions import CorpusCache, Desk, suggested_path
+from workbench.actions import CorpusCache, Desk, ban_unit, heard, suggested_path, swap_unit, toggle_pin
 from workbench.state import Session
 from workbench.views.bar import AppBar
 from workbench.views.controls import Controls
@@ -24,7 +24,7 @@ __all__ = ["DASHBOARDS", "BlendPage"]
 DASHBOARDS = [{"id": "corpus", "label": "Corpus"}, {"id": "blend", "label": "Blend"}]
 """What the rail shows: only what exists."""
 
-_STATUS_KEYS = ["play", "from_start", "previous_join", "next_join", "curve", "fit", "help"]
+_STATUS_KEYS = ["play", "next_join", "next_unit", "pin", "ban", "hear", "sides", "curve", "undo", "help"]
 _clocks = itertools.count(1)
 
 
@@ -43,6 +43,8 @@ class BlendPage:
         Runs an action where this tab's parameters may be set.
     fill : bool
         Fill the window; False in a notebook cell.
+    begin : str
+        Dashboard that is shown first.
     """
 
     def __init__(
@@ -52,7 +54,9 @@ class BlendPage:
         export_folder: Path,
         deliver: Callable[[Callable[[], None]], None],
         fill: bool = True,
+        begin: str = "blend",
     ) -> None:
+        self._begin = begin
         self.session = Session()
         self.desk = Desk(self.session, cache, deliver)
         self._make_demo = make_demo
@@ -61,8 +65,8 @@ class BlendPage:
         self.controls = Controls(self.session)
         self.bar = AppBar(self.session, self.controls, on_corpus=lambda: self.show("corpus"))
         self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
-        self.board = BlendBoard(self.session, self.controls, clock)
-        self.inspector = FragmentInspector(self.session)
+        self.board = BlendBoard(self.session, self.controls, clock, self.desk.cancel)
+        self.inspector = FragmentInspector(self.session, self._hear)
         self.export = ExportBox(
             self.controls, str(suggested_path(export_folder, "blend")), on_export=self.desk.export
         )
@@ -70,7 +74,7 @@ class BlendPage:
             self.session,
             self.controls,
             on_open=self.desk.open,
-            on_demo=lambda: self.desk.make_and_open(self._make_demo),
+            on_demo=self.open_demo,
             on_cancel=self.desk.cancel,
             on_back=lambda: self.show("blend"),
         )
@@ -104,17 +108,34 @@ class BlendPage:
         watch(self._theme, "theme")
         watch(self._status, ["status", "working", "result", "corpus", "fraction", "message"])
         watch(self._corpus, "corpus")
+        watch(self._opening, "status")
         watch(self._sound, "result")
 
     def show(self, dashboard: str) -> None:
-        """Show the corpus page or the blend page; without a corpus there is only the first."""
-        blend = dashboard == "blend" and self.session.corpus is not None
+        """Show the corpus page or the blend page; without a corpus, open or on its way, only the first."""
+        have = self.session.corpus is not None or self.session.status == "opening"
+        blend = dashboard == "blend" and have
         self.shell.param.update(starting=not blend, active="blend" if blend else "corpus")
+
+    def open(self, folder: Path) -> None:
+        """Open a corpus, and show the dashboard to begin with meanwhile."""
+        self.desk.open(folder)
+        self.show(self._begin)
+
+    def open_demo(self) -> None:
+        """Make and open the simulated starter corpus; the head is there from the first moment."""
+        self.desk.make_and_open(self._make_demo)
+        self.show(self._begin)
 
     def _corpus(self, event: Any) -> None:
         if event.new is not None:
             self.shell.page_title = f"{event.new.description.name} – blend"
-            self.show("blend")
+            self.show(self._begin)
+            self._begin = "blend"
+
+    def _opening(self, event: Any) -> None:
+        if event.new in ("empty", "error"):
+            self.show("corpus")
 
     def _theme(self, event: Any) -> None:
         self.shell.theme = self.transport.theme = event.new
@@ -126,16 +147,43 @@ class BlendPage:
         if old is None or not old.request.same_target(result.request):
             self.transport.load(result.utterance, result.request.corpus.phones)
 
+    def _hear(self, option: int | None) -> None:
+        sound = heard(self.session, option)
+        if sound is not None:
+            self.transport.hear(sound)
+
+    def _play_fragment(self) -> None:
+        result, selected = self.session.result, self.session.selected
+        if result is None:
+            return
+        shown = self.board.lane.score["fragments"]
+        if selected < len(shown):
+            self.transport.play(shown[selected]["start"], shown[selected]["end"])
+
     def _key(self, action: str, index: int) -> None:
         session = self.session
-        if action in ("previous_sentence", "next_sentence"):
-            session.step_sentence(1 if action == "next_sentence" else -1)
-        elif action == "curve" and index < len(PRESETS):
-            session.weighting = list(PRESETS.values())[index]
-        elif action == "theme":
-            self.bar.toggle_theme()
-        elif action == "cancel":
-            self.desk.cancel()
+        if action == "curve":
+            if index < len(PRESETS):
+                session.weighting = list(PRESETS.values())[index]
+            return
+        commands: dict[str, Callable[[], object]] = {
+            "previous_sentence": lambda: session.step_sentence(-1),
+            "next_sentence": lambda: session.step_sentence(1),
+            "next_unit": lambda: swap_unit(session, 1),
+            "previous_unit": lambda: swap_unit(session, -1),
+            "pin": lambda: toggle_pin(session),
+            "ban": lambda: ban_unit(session),
+            "hear": lambda: self._hear(None),
+            "play_selection": self._play_fragment,
+            "sides": session.swap_sides,
+            "undo": session.undo,
+            "redo": session.redo,
+            "export": self.export.submit,
+            "theme": self.bar.toggle_theme,
+            "cancel": self.desk.cancel,
+        }
+        if action in commands:
+            commands[action]()
 
     def _status(self, *events: Any) -> None:
         s = self.session

@@ -78,7 +78,7 @@ def check_run(options: Options, timeout_s: float = 180.0) -> CheckReport:
     logging.getLogger("bokeh").setLevel(logging.ERROR)  # the check closes its session while it is being told
     started = time.monotonic()
     port = free_port()
-    workbench = Workbench(replace(options, demo=options.corpus is None, browser=False))
+    workbench = Workbench(replace(options, browser=False))
     server = workbench.serve(port=port, threaded=True, browser=False)
     url = f"http://127.0.0.1:{port}/"
     try:

@@ -14,12 +14,12 @@ from corpus_tools.core import InputError
 
 __all__ = ["APPS", "app", "run"]
 
-APPS = ("blend",)
+APPS = ("corpus", "blend")
 """Dashboards that exist."""
 
 _HELP = """The visual speech workbench in the browser.
 
-  workbench                 the start page: open a folder, or the simulated starter corpus
+  workbench                 a simulated starter corpus, made on first use
 
   workbench WORK            a corpus that 'corpus-tools init' made
 """
@@ -35,9 +35,11 @@ def _check_app(name: str) -> None:
 @app.command()
 def workbench(
     corpus: Annotated[
-        Path | None, typer.Argument(help="Corpus folder; the start page when left out.")
+        Path | None, typer.Argument(help="Corpus folder; the simulated starter corpus when left out.")
     ] = None,
-    app_name: Annotated[str, typer.Option("--app", help="Dashboard to begin with.")] = "blend",
+    app_name: Annotated[
+        str, typer.Option("--app", help=f"Dashboard to begin with: {', '.join(APPS)}.")
+    ] = "blend",
     port: Annotated[int, typer.Option("--port", help="Port to listen on; 0 takes a free one.")] = 5006,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Do not open the browser.")] = False,
     host: Annotated[str, typer.Option("--host", help="Address to listen on.")] = "127.0.0.1",
@@ -64,7 +66,14 @@ def workbench(
     from workbench.apps.serving import Options, Workbench, check_options
 
     options = Options(
-        corpus, host, 0 if check else port, password_file, tuple(origin or ()), root, not no_browser
+        corpus,
+        host,
+        0 if check else port,
+        password_file,
+        tuple(origin or ()),
+        root,
+        not no_browser,
+        app=app_name,
     )
     check_options(options)
     if check:

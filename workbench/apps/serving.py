@@ -44,7 +44,9 @@ class Options:
     browser : bool
         Open the browser.
     demo : bool
-        Open the simulated starter corpus when no corpus is given.
+        Open the simulated starter corpus when no corpus is given; never with a `root`, which it lies outside.
+    app : str
+        Dashboard to begin with.
     """
 
     corpus: Path | None = None
@@ -54,7 +56,8 @@ class Options:
     origins: tuple[str, ...] = field(default=())
     root: Path | None = None
     browser: bool = True
-    demo: bool = False
+    demo: bool = True
+    app: str = "blend"
 
 
 def read_password(path: Path) -> str:
@@ -172,15 +175,16 @@ class Workbench:
             self.make_demo,
             self.options.root or Path.cwd(),
             deliver if doc is not None else _at_once,
+            begin=self.options.app,
         )
         self.pages.append(made)
         if doc is not None:
             doc.on_session_destroyed(lambda _: self._gone(made))
             doc.title = made.shell.page_title
         if self.options.corpus is not None:
-            made.desk.open(self.options.corpus)
-        elif self.options.demo:
-            made.desk.make_and_open(self.make_demo)
+            made.open(self.options.corpus)
+        elif self.options.demo and self.options.root is None:
+            made.open_demo()
         return made.shell
 
     def _gone(self, page: BlendPage) -> None:

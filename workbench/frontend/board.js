@@ -24,9 +24,59 @@ function legend() {
   const key = document.createElement("span");
   key.className = "legend";
   key.innerHTML =
-    '<i class="now"></i>now <i class="recorded"></i>recorded <i class="overlap"></i>overlap ' +
-    '<i class="threshold"></i>closed below';
+    '<i class="now"></i>now <i class="other"></i>A <i class="recorded"></i>recorded ' +
+    '<i class="natural"></i>natural 10–90 % <i class="threshold"></i>closed below';
   return key;
+}
+
+/** A | B over the head: which of two settings is shown. */
+function sides(model) {
+  const group = document.createElement("div");
+  group.className = "over sides";
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", "Setting shown");
+  const buttons = ["A", "B"].map((side) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = side;
+    button.onclick = () => model.side !== side && model.send_msg({ type: "action", id: "sides" });
+    group.append(button);
+    return button;
+  });
+  const cap = document.createElement("kbd");
+  cap.textContent = "X";
+  group.append(cap);
+  const draw = () => {
+    group.hidden = !model.compared;
+    for (const b of buttons) b.setAttribute("aria-pressed", String(b.textContent === model.side));
+  };
+  for (const name of ["side", "compared"]) model.on(name, draw);
+  draw();
+  return group;
+}
+
+/** Progress of a corpus that is being made: what, how far, how long; and how to stop it. */
+function progress(model) {
+  const box = document.createElement("div");
+  box.className = "waiting";
+  box.innerHTML = `<h2></h2><div class="progress" role="progressbar" aria-valuemin="0" aria-valuemax="100"
+    aria-label="Progress"><i></i></div><p class="doing" role="status"></p><button type="button">Cancel
+    <kbd>Esc</kbd></button> <span class="left"></span>`;
+  const [title, bar, doing, cancel, left] = box.children;
+  cancel.onclick = () => model.send_msg({ type: "action", id: "cancel" });
+  const draw = () => {
+    const percent = Math.round(100 * model.fraction);
+    box.hidden = !model.doing && !model.hint;
+    title.textContent = model.doing ? model.title : model.hint;
+    bar.hidden = doing.hidden = cancel.hidden = left.hidden = !model.doing;
+    bar.firstElementChild.style.width = `${percent}%`;
+    bar.setAttribute("aria-valuenow", String(percent));
+    doing.textContent = `${model.doing} · ${percent} %`;
+    left.textContent = model.left_text;
+  };
+  for (const name of ["fraction", "doing", "left_text", "hint", "title"]) model.on(name, draw);
+  draw();
+  return box;
 }
 
 /** Panel entry point. */
@@ -39,7 +89,7 @@ export function renderBoard({ model, el }) {
   face.card.append(slot(model, "face"));
   const tag = document.createElement("div");
   tag.className = "tag";
-  face.card.append(tag);
+  face.card.append(tag, sides(model));
 
   const curve = section("weighting", "g(u) at the joins");
   curve.card.append(slot(model, "presets"), slot(model, "plot"), slot(model, "sliders"));
@@ -53,18 +103,25 @@ export function renderBoard({ model, el }) {
   const notice = document.createElement("div");
   notice.className = "notice err band";
   notice.setAttribute("role", "alert");
-  lane.card.append(notice, slot(model, "lane"));
+  const warning = document.createElement("div");
+  warning.className = "notice warn band";
+  warning.setAttribute("role", "status");
+  lane.card.append(notice, warning, slot(model, "lane"), progress(model));
 
   const draw = () => {
     tag.textContent = model.head_text;
+    tag.hidden = !model.head_text;
     sub.textContent = model.lane_text;
     chip.textContent = model.held_out_text;
     chip.hidden = !model.held_out_text;
     notice.hidden = !model.message;
     notice.textContent = model.message ? `✕ ${model.message}` : "";
+    warning.hidden = !model.warning || Boolean(model.message);
+    warning.textContent = model.warning ? `▲ ${model.warning}` : "";
+    warning.title = model.warning;
     root.classList.toggle("stale", model.stale);
   };
-  for (const name of ["head_text", "lane_text", "held_out_text", "message", "stale"]) model.on(name, draw);
+  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale"]) model.on(name, draw);
   draw();
   root.append(face.card, curve.card, lane.card);
   return root;

@@ -3,120 +3,9 @@
  * lip aperture now and as recorded, joins. Click selects a fragment, drag on the curve seeks, wheel zooms.
  */
 import { clock } from "./clock.js";
-import { drawLane, layOut, toTime, toX } from "./lane_draw.js";
-
-const MIN_SPAN_S = 0.08;
-
-function floats(buffer) {
-  if (!buffer?.byteLength) return new Float32Array(0);
-  const bytes = buffer instanceof ArrayBuffer ? buffer : buffer.slice().buffer;
-  return new Float32Array(bytes);
-}
-
-function readCurves(model) {
-  const c = model.curves;
-  return {
-    blend: floats(c.blend),
-    rate: c.rate ?? 120,
-    start: c.start ?? 0,
-    recorded: floats(c.recorded),
-    recordedRate: c.recorded_rate ?? 25,
-    recordedStart: c.recorded_start ?? 0,
-    threshold: c.threshold ?? null,
-  };
-}
-
-function tooltipText(state, x, y) {
-  const { box, view, score, joins, curves } = state;
-  const t = toTime(box, view, x);
-  if (x < box.left || x > box.right) return "";
-  if (y >= box.phones[0] && y <= box.phones[1]) {
-    const phone = score.phones.find(([a, b]) => t >= a && t < b);
-    return phone && `${phone[2]} · ${phone[0].toFixed(3)}–${phone[1].toFixed(3)} s · ${phone[3]}`;
-  }
-  if (y >= box.fragments[0] && y <= box.fragments[1]) {
-    const f = score.fragments.find((g) => t >= g.start && t < g.end);
-    if (!f) return "";
-    const backoff = f.backoff.map((b) => `${b[1]} spoken as ${b[2]}`).join(", ");
-    return `${f.id} “${f.text}” · phones ${f.phones} · cost ${f.cost.toFixed(2)}${backoff && ` · ▲ ${backoff}`}`;
-  }
-  const near = joins.find((j) => Math.abs(toX(box, view, j.time) - x) < 24);
-  if (y >= box.joins[0] && near) {
-    const place =
-      near.percentile === null ? "unknown" : `${near.percentile.toFixed(0)} % of natural peaks lie below`;
-    return `join at ${near.phone}, ${near.time.toFixed(3)} s · overlap ${(1000 * near.overlap).toFixed(0)} ms · peak acceleration: ${place}`;
-  }
-  if (y < box.curve[0] || y > box.curve[1]) return "";
-  const at = (values, rate, start) => values[Math.round((t - start) * rate)];
-  const now = at(curves.blend, curves.rate, curves.start);
-  const was = at(curves.recorded, curves.recordedRate, curves.recordedStart);
-  const parts = [`${t.toFixed(3)} s`];
-  if (now !== undefined) parts.push(`now ${now.toFixed(1)} mm`);
-  if (was !== undefined) parts.push(`recorded ${was.toFixed(1)} mm`);
-  return parts.join(" · ");
-}
-
-/** The fragments as a list that keyboard and screen reader reach. */
-function buildList(model, select) {
-  const list = document.createElement("ol");
-  list.className = "vsw-lane-list";
-  list.setAttribute("role", "listbox");
-  list.setAttribute("aria-label", "Chosen fragments");
-  list.tabIndex = 0;
-  const draw = () => {
-    list.replaceChildren(
-      ...model.score.fragments.map((f, index) => {
-        const item = document.createElement("li");
-        item.setAttribute("role", "option");
-        item.id = `vsw-fragment-${index}`;
-        item.setAttribute("aria-selected", String(index === model.selected));
-        item.textContent =
-          `${index + 1}: ${f.id}, “${f.text}”, phones ${f.phones}, ` +
-          `${f.start.toFixed(2)} to ${f.end.toFixed(2)} s, cost ${f.cost.toFixed(2)}`;
-        item.onclick = () => select(index);
-        return item;
-      }),
-    );
-    list.setAttribute("aria-activedescendant", `vsw-fragment-${model.selected}`);
-  };
-  list.onkeydown = (event) => {
-    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    select(model.selected + step);
-  };
-  draw();
-  return { list, draw };
-}
-
-/** Zoom and pan of the window in view; always inside [0, duration]. */
-class Window {
-  constructor(duration) {
-    this.fit(duration);
-  }
-  fit(duration) {
-    this.duration = Math.max(MIN_SPAN_S, duration);
-    this.range = [0, this.duration];
-  }
-  zoom(factor, about) {
-    const [a, b] = this.range;
-    const span = Math.min(this.duration, Math.max(MIN_SPAN_S, (b - a) * factor));
-    const share = (about - a) / (b - a);
-    this.set(about - share * span, span);
-  }
-  pan(seconds) {
-    this.set(this.range[0] + seconds, this.range[1] - this.range[0]);
-  }
-  set(start, span) {
-    const held = Math.min(this.duration, Math.max(MIN_SPAN_S, span));
-    const first = Math.min(Math.max(0, start), this.duration - held);
-    this.range = [first, first + held];
-  }
-  /** The window as the clock tells it: null when all is in view. */
-  get shared() {
-    return this.range[1] - this.range[0] > this.duration - 1e-6 ? null : this.range;
-  }
-}
+import { layOut, toTime, toX } from "./lane_axes.js";
+import { drawLane } from "./lane_draw.js";
+import { Window, buildList, chipAt, readCurves, tooltipText } from "./lane_parts.js";
 
 /** Panel entry point. */
 export function renderLane({ model, el }) {
@@ -205,6 +94,11 @@ export function renderLane({ model, el }) {
       if (index >= 0) select(index);
       return;
     }
+    const chip = y >= state.box.others[0] && y <= state.box.others[1] && chipAt(state, event.offsetX);
+    if (chip) {
+      model.send_msg({ type: "swap", fragment: chip.index, option: chip.option + 1 });
+      return;
+    }
     if (y >= state.box.joins[0]) {
       const near = model.joins.findIndex(
         (j) => Math.abs(toX(state.box, window_.range, j.time) - event.offsetX) < 28,
@@ -272,17 +166,21 @@ export function renderLane({ model, el }) {
   const off = clk.add((t) => moveCursor(t));
 
   model.on("score", () => {
-    window_.fit(model.score.duration);
-    moved();
+    if (Math.abs(window_.duration - model.score.duration) > 1e-6) {
+      window_.fit(model.score.duration);
+      moved();
+    }
     describe();
   });
   model.on("joins", describe);
   model.on("selected", describe);
   model.on("theme", ask);
-  model.on("curves", () => {
-    state.curves = readCurves(model);
-    ask();
-  });
+  for (const name of ["curves", "band"]) {
+    model.on(name, () => {
+      state.curves = readCurves(model);
+      ask();
+    });
+  }
   const watch = new ResizeObserver(ask);
   watch.observe(root);
   canvas.vsw = { state, window: window_, toX: (t) => toX(state.box, window_.range, t) };

@@ -2,74 +2,16 @@
  * Drawing of the lane: target phones, chosen fragments, lip aperture and joins on one time axis.
  * Pure functions of a layout, data and colours; nothing here listens or keeps anything.
  */
-
-/** Width in px of the column that names the rows. */
-export const GUTTER = 76;
-
-const ROWS = { axis: 20, phones: 34, gap: 8, fragments: 38, joins: 26 };
-
-/**
- * @param {number} width @param {number} height CSS px of the canvas
- * @returns rows of the lane, in px
- */
-export function layOut(width, height) {
-  const phones = ROWS.axis;
-  const fragments = phones + ROWS.phones + ROWS.gap;
-  const curve = fragments + ROWS.fragments + ROWS.gap;
-  const joins = height - ROWS.joins;
-  return {
-    width,
-    height,
-    left: GUTTER,
-    right: width - 8,
-    axis: [0, ROWS.axis],
-    phones: [phones, phones + ROWS.phones],
-    fragments: [fragments, fragments + ROWS.fragments],
-    curve: [curve, Math.max(curve + 20, joins - 6)],
-    joins: [joins, height - 4],
-  };
-}
-
-/** Time in seconds -> px. */
-export function toX(box, view, t) {
-  return box.left + ((t - view[0]) / (view[1] - view[0])) * (box.right - box.left);
-}
-
-/** px -> time in seconds. */
-export function toTime(box, view, x) {
-  return view[0] + ((x - box.left) / (box.right - box.left)) * (view[1] - view[0]);
-}
-
-/** A step of 1, 2 or 5 times a power of ten that gives about `count` ticks over `span`. */
-export function niceStep(span, count) {
-  const raw = span / Math.max(1, count);
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const lead = raw / power;
-  return power * (lead <= 1 ? 1 : lead <= 2 ? 2 : lead <= 5 ? 5 : 10);
-}
-
-/** Text cut to `width` with an ellipsis; empty when not even three letters fit. */
-export function fitText(ctx, text, width) {
-  if (ctx.measureText(text).width <= width) return text;
-  let n = text.length;
-  while (n > 0 && ctx.measureText(`${text.slice(0, n)}…`).width > width) n -= 1;
-  return n >= 3 ? `${text.slice(0, n).trimEnd()}…` : "";
-}
-
-function tint(ctx, colour, alpha, x, y, w, h) {
-  ctx.save();
-  ctx.globalAlpha = alpha;
-  ctx.fillStyle = colour;
-  ctx.fillRect(x, y, w, h);
-  ctx.restore();
-}
+import { fitText, niceStep, tint, toX } from "./lane_axes.js";
+import { drawAperture } from "./lane_curve.js";
 
 function drawGutter(ctx, box, p) {
   const names = [
     ["phones", "Target", "phones"],
     ["fragments", "Chosen", "source"],
+    ["others", "Others", ""],
     ["curve", "Aperture", "mm"],
-    ["joins", "Joins", "natural %"],
+    ["joins", "Joins", "ratio"],
   ];
   ctx.textAlign = "left";
   for (const [row, title, hint] of names) {
@@ -79,7 +21,7 @@ function drawGutter(ctx, box, p) {
     ctx.fillText(title, 10, y + 12);
     ctx.fillStyle = p.ink3;
     ctx.font = `400 10px ${p.family}`;
-    ctx.fillText(hint, 10, y + 24);
+    if (hint) ctx.fillText(hint, 10, y + 24);
   }
 }
 
@@ -121,6 +63,50 @@ function drawPhones(ctx, box, view, phones, p) {
   }
 }
 
+function drawPin(ctx, fragment, a, b, top, p) {
+  if (!fragment.pinned) return;
+  ctx.font = `500 11px ${p.family}`;
+  ctx.fillStyle = p.acc;
+  const long = ctx.measureText("pinned").width;
+  const idEnd = a + 6 + ctx.measureText(fragment.id).width + 10;
+  ctx.textAlign = "right";
+  if (b - 6 - long > idEnd) ctx.fillText("pinned", b - 6, top + 16);
+  else ctx.fillRect(b - 6, top + 6, 3, 8);
+  ctx.textAlign = "left";
+}
+
+/**
+ * The units that were turned down, as chips under the fragment that they could replace.
+ * @returns {{index: number, option: number, x: number, w: number, id: string}[]} those that have room
+ */
+export function placeOthers(ctx, box, view, fragments, p) {
+  ctx.font = `400 10px ${p.family}`;
+  const chips = [];
+  fragments.forEach((f, index) => {
+    const end = Math.min(box.right, toX(box, view, f.end)) - 2;
+    let x = Math.max(box.left, toX(box, view, f.start)) + 2;
+    f.others.forEach((id, k) => {
+      const w = ctx.measureText(id).width + 10;
+      if (x + w > end) x = Infinity;
+      else chips.push({ index, option: k, x, w, id });
+      x += w + 4;
+    });
+  });
+  return chips;
+}
+
+function drawOthers(ctx, box, chips, selected, p) {
+  const [top, bottom] = box.others;
+  ctx.font = `400 10px ${p.family}`;
+  ctx.textAlign = "left";
+  for (const { index, x, w, id } of chips) {
+    ctx.strokeStyle = p.line;
+    ctx.strokeRect(x + 0.5, top + 2.5, w - 1, bottom - top - 5);
+    ctx.fillStyle = index === selected ? p.ink : p.ink2;
+    ctx.fillText(id, x + 5, top + 14);
+  }
+}
+
 function drawFragments(ctx, box, view, fragments, selected, p) {
   const [top, bottom] = box.fragments;
   fragments.forEach((f, index) => {
@@ -142,6 +128,7 @@ function drawFragments(ctx, box, view, fragments, selected, p) {
     const long = f.text ? `“${f.text}”  ${cost}` : cost;
     const shown = [long, cost].find((text) => ctx.measureText(text).width <= b - a - 10);
     ctx.fillText(shown ?? "", a + 6, top + 31);
+    drawPin(ctx, f, a, b, top, p);
     if (index !== selected) return;
     ctx.strokeStyle = p.acc;
     ctx.lineWidth = 2;
@@ -169,69 +156,6 @@ function drawOverlaps(ctx, box, view, joins, chosen, p) {
   });
 }
 
-/** Lowest and highest value to show: both curves, zero, and a margin. */
-export function valueRange(curves) {
-  let low = 0;
-  let high = 1;
-  for (const values of [curves.blend, curves.recorded]) {
-    for (let i = 0; i < (values?.length ?? 0); i += 1) {
-      if (values[i] < low) low = values[i];
-      if (values[i] > high) high = values[i];
-    }
-  }
-  return [low - 0.04 * (high - low), high + 0.06 * (high - low)];
-}
-
-function drawCurve(ctx, box, view, values, rate, start, range, style) {
-  if (!values?.length) return;
-  const [top, bottom] = box.curve;
-  const y = (v) => bottom - ((v - range[0]) / (range[1] - range[0])) * (bottom - top);
-  const first = Math.max(0, Math.floor((view[0] - start) * rate) - 1);
-  const last = Math.min(values.length - 1, Math.ceil((view[1] - start) * rate) + 1);
-  ctx.strokeStyle = style.colour;
-  ctx.lineWidth = style.width;
-  ctx.lineJoin = "round";
-  ctx.beginPath();
-  for (let i = first; i <= last; i += 1) ctx.lineTo(toX(box, view, start + i / rate), y(values[i]));
-  ctx.stroke();
-  ctx.lineWidth = 1;
-}
-
-function drawAperture(ctx, box, view, curves, p) {
-  const [top, bottom] = box.curve;
-  const range = valueRange(curves);
-  const y = (v) => Math.round(bottom - ((v - range[0]) / (range[1] - range[0])) * (bottom - top)) + 0.5;
-  const step = niceStep(range[1] - range[0], (bottom - top) / 34);
-  ctx.font = `400 10px ${p.family}`;
-  for (let k = Math.ceil(range[0] / step); k * step <= range[1]; k += 1) {
-    ctx.strokeStyle = k === 0 ? p.ink3 : p.line2;
-    ctx.beginPath();
-    ctx.moveTo(box.left, y(k * step));
-    ctx.lineTo(box.right, y(k * step));
-    ctx.stroke();
-    ctx.textAlign = "right";
-    ctx.fillStyle = p.ink2;
-    ctx.fillText(String(+(k * step).toFixed(6)), box.left - 6, y(k * step) + 3);
-  }
-  if (curves.threshold !== null && curves.threshold !== undefined) {
-    ctx.strokeStyle = p.warn_mark;
-    ctx.setLineDash([3, 3]);
-    ctx.beginPath();
-    ctx.moveTo(box.left, y(curves.threshold));
-    ctx.lineTo(box.right, y(curves.threshold));
-    ctx.stroke();
-    ctx.setLineDash([]);
-  }
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(box.left, top - 2, box.right - box.left, bottom - top + 4);
-  ctx.clip();
-  const grey = { colour: p.nat, width: 1.6 };
-  drawCurve(ctx, box, view, curves.recorded, curves.recordedRate, curves.recordedStart, range, grey);
-  drawCurve(ctx, box, view, curves.blend, curves.rate, curves.start, range, { colour: p.acc, width: 2.4 });
-  ctx.restore();
-}
-
 function drawJoins(ctx, box, view, joins, chosen, p) {
   const [top, bottom] = box.joins;
   ctx.font = `600 11px ${p.family}`;
@@ -240,9 +164,14 @@ function drawJoins(ctx, box, view, joins, chosen, p) {
   joins.forEach((join, index) => {
     const x = toX(box, view, join.time);
     if (x < box.left || x > box.right) return;
-    const known = join.percentile !== null;
-    const high = known && join.percentile > 95;
-    const text = `${join.phone} ${known ? `${high ? "▲ " : ""}${join.percentile.toFixed(0)}` : "–"}`;
+    const known = join.ratio !== null;
+    const high = known && join.ratio > 1;
+    const before = join.other === null || join.other === undefined ? "" : `${join.other.toFixed(2)} → `;
+    const now = known ? `${high ? "▲ " : ""}${before}${join.ratio.toFixed(2)}` : "–";
+    const full = `${join.phone} ${now}`;
+    const next = joins[index + 1] ? toX(box, view, joins[index + 1].time) - x : Infinity;
+    const short = `${high ? "▲ " : ""}${known ? join.ratio.toFixed(2) : "–"}`;
+    const text = ctx.measureText(full).width + 16 < next ? full : short;
     const w = ctx.measureText(text).width + 12;
     const left = Math.min(Math.max(x - w / 2, box.left), box.right - w);
     if (left < edge + 3) return;
@@ -252,14 +181,14 @@ function drawJoins(ctx, box, view, joins, chosen, p) {
     const near = index === chosen || index === chosen - 1;
     ctx.strokeStyle = near ? p.acc : high ? p.warn : p.line;
     ctx.strokeRect(left + 0.5, top + 2.5, w - 1, bottom - top - 5);
-    ctx.fillStyle = high ? p.warn : p.ink;
+    ctx.fillStyle = high ? p.warn : known ? p.ok : p.ink;
     ctx.fillText(text, left + w / 2, top + 16);
   });
 }
 
 /** Draw the whole lane. */
 export function drawLane(ctx, box, view, data, palette) {
-  const { score, joins, curves, selected } = data;
+  const { score, joins, selected } = data;
   ctx.clearRect(0, 0, box.width, box.height);
   ctx.fillStyle = palette.panel;
   ctx.fillRect(0, 0, box.width, box.height);
@@ -273,8 +202,10 @@ export function drawLane(ctx, box, view, data, palette) {
   drawAxis(ctx, box, view, palette);
   drawPhones(ctx, box, view, score.phones, palette);
   drawFragments(ctx, box, view, score.fragments, selected, palette);
+  data.chips = placeOthers(ctx, box, view, score.fragments, palette);
+  drawOthers(ctx, box, data.chips, selected, palette);
   ctx.restore();
-  drawAperture(ctx, box, view, curves, palette);
+  drawAperture(ctx, box, view, data, palette);
   ctx.save();
   ctx.beginPath();
   ctx.rect(box.left, 0, box.right - box.left, box.height);

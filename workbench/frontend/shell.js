@@ -49,8 +49,10 @@ function typing(event) {
 
 function keyName(event) {
   const key = event.key === " " ? "Space" : event.key;
-  const shifted = event.shiftKey && (key.length > 1 || key === "Space");
-  return (shifted ? "Shift+" : "") + (key.length === 1 ? key.toLowerCase() : key);
+  const held = event.ctrlKey || event.metaKey;
+  const shifted = event.shiftKey && (key.length > 1 || held);
+  const before = (held ? "Ctrl+" : "") + (event.altKey ? "Alt+" : "") + (shifted ? "Shift+" : "");
+  return before + (key.length === 1 ? key.toLowerCase() : key);
 }
 
 /** Find the binding of a key press: [binding, which of its keys]. */
@@ -182,7 +184,7 @@ export function renderShell({ model, el }) {
   root.append(drawer);
 
   const onKey = (event) => {
-    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.defaultPrevented) return;
     const name = keyName(event);
     const found = findBinding(model.bindings, name);
     if (!found || found[0].scope === "transport") return;

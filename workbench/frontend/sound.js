@@ -113,6 +113,21 @@ export class Sound {
     });
   }
 
+  /** Play other samples once, beside the clock; what plays now stops. */
+  async hear(samples, rate) {
+    this.halt();
+    const ticket = this.ticket;
+    const context = await this.open();
+    if (!context || ticket !== this.ticket || !samples.length) return;
+    const buffer = context.createBuffer(1, samples.length, rate);
+    buffer.copyToChannel(samples, 0);
+    this.node = context.createBufferSource();
+    this.node.buffer = buffer;
+    this.node.connect(context.destination);
+    this.node.start();
+    this.heard = (this.heard ?? 0) + 1;
+  }
+
   drop() {
     this.ticket += 1;
     if (!this.node) return;

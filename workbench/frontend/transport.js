@@ -78,6 +78,7 @@ export function renderTransport({ model, el }) {
     play: ({ from, to }) => play(Math.max(0, from), Math.min(sound.duration, to)),
     stop: () => sound.halt(),
     seek: ({ t }) => clk.seek(t),
+    hear: ({ pcm, rate }) => sound.hear(decodePcm(pcm), rate),
   };
   const onSeek = () => clk.playing && play(clk.t, sound.duration);
 

@@ -1,15 +1,16 @@
 """What a person works on, without Panel: session, stages, tokens, keys, and data for the views."""
 
 from workbench.state.editing import EDITABLE, SETTINGS, TARGETS, default_config
-from workbench.state.effects import OVERLAPS_S, Effects, compute_effects, signal_band
+from workbench.state.effects import OVERLAPS_S, Effects, compute_effects, effect_data, signal_band
 from workbench.state.history import Entry, History, change_text
 from workbench.state.keys import KeyBinding, key_label, key_table
 from workbench.state.lane_data import (
     FragmentDetails,
-    aperture_band,
     aperture_curves,
+    band_data,
     fragment_details,
     joins_data,
+    missing_of,
     phone_rows,
     score,
     stand_ins,
@@ -42,18 +43,20 @@ __all__ = [
     "Signal",
     "Stages",
     "Tokens",
-    "aperture_band",
     "aperture_curves",
+    "band_data",
     "change_text",
     "compute_effects",
     "css_variables",
     "default_config",
+    "effect_data",
     "fragment_at",
     "fragment_details",
     "joins_data",
     "key_label",
     "key_table",
     "marker_signal",
+    "missing_of",
     "options_of",
     "phone_rows",
     "pin_at",

@@ -10,10 +10,10 @@ import numpy as np
 from corpus_tools.core import FloatArray
 from corpus_tools.fragments import natural_band
 from corpus_tools.synthesis import WEIGHTINGS, EffectCurve, effect_curves, narrowed
-from workbench.state.signals import Signal
+from workbench.state.signals import SIGNALS, Signal
 from workbench.state.stages import Request, Result
 
-__all__ = ["OVERLAPS_S", "Effects", "blend_settings", "compute_effects", "signal_band"]
+__all__ = ["OVERLAPS_S", "Effects", "blend_settings", "compute_effects", "effect_data", "signal_band"]
 
 OVERLAPS_S = (0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.27, 0.3)
 """Overlaps at which every weighting function is measured, s."""
@@ -28,10 +28,13 @@ class Effects:
     result : Result
         What it belongs to: it holds for any g(u) and overlap of the same pieces.
     curves : tuple of EffectCurve
+    band : (times s, low, high)
+        Natural range of the lip aperture, as of :func:`signal_band`.
     """
 
     result: Result
     curves: tuple[EffectCurve, ...]
+    band: tuple[FloatArray, FloatArray, FloatArray]
 
     def fits(self, result: Result) -> bool:
         """Tell whether the curves are those of another result too."""
@@ -52,6 +55,44 @@ class Effects:
         return name, overlap, ratio
 
 
+def effect_data(
+    effects: Effects | None, result: Result, other: Result | None, join: int
+) -> dict[str, object]:
+    """Return the effect plot of one join as plain data.
+
+    Parameters
+    ----------
+    effects : Effects or None
+        None while they are being measured: the present dots alone are shown then.
+    result : Result
+    other : Result or None
+        Of setting A.
+    join : int
+    """
+    if join >= len(result.ratios):
+        return {"overlaps": [], "curves": [], "now": None, "other": None}
+    fits = effects is not None and effects.fits(result)
+    curves = effects.curves if effects is not None and fits else ()
+    same = other is not None and join < len(other.ratios) and other.request.same_target(result.request)
+    return {
+        "overlaps": list(OVERLAPS_S) if fits else [],
+        "curves": [{"name": c.weighting, "ratios": [float(r) for r in c.ratios[:, join]]} for c in curves],
+        "now": _dot(result, join),
+        "other": _dot(other, join) if other is not None and same else None,
+    }
+
+
+def _dot(result: Result, join: int) -> dict[str, object]:
+    blend = result.request.config.blend
+    ratio = result.ratios[join]
+    return {
+        "name": blend.weighting,
+        "overlap": blend.overlap_s,
+        "ratio": ratio if np.isfinite(ratio) else None,
+        "moved": blend.shape != 0.0,
+    }
+
+
 def blend_settings(request: Request) -> dict[str, object]:
     """Return the blend settings that are the same for every curve of the effect plot."""
     own = {"weighting", "shape", "overlap_s", "curve_weights"}
@@ -64,7 +105,7 @@ def compute_effects(result: Result) -> Effects:
     pieces = narrowed(result.pieces, natural)
     names: dict[str, dict[str, Any]] = {name: {} for name in WEIGHTINGS if name != "user"}
     curves = effect_curves(pieces, natural, names, OVERLAPS_S, **blend_settings(result.request))
-    return Effects(result, curves)
+    return Effects(result, curves, signal_band(result, SIGNALS[0]))
 
 
 def signal_band(result: Result, signal: Signal) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -9,7 +9,10 @@ from importlib import resources
 
 __all__ = ["KeyBinding", "key_label", "key_table"]
 
-_SIGNS = {"Space": "Space", "Escape": "Esc", "Enter": "↵", "ArrowLeft": "←", "ArrowRight": "→"}
+_SIGNS = {"Space": "Space", "Escape": "Esc", "Enter": "↵", "ArrowLeft": "←", "ArrowRight": "→"} | {
+    "ArrowUp": "↑",
+    "ArrowDown": "↓",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +24,8 @@ class KeyBinding:
     id : str
         Name of the action.
     keys : tuple of str
-        Keys as the browser names them, "Shift+" before; several keys of one action are told apart by place.
+        Keys as the browser names them, "Ctrl+", "Alt+", "Shift+" before; several keys of one action are told
+        apart by place.
     label, short : str
         What it does: for the help, and for the status line.
     scope : str

@@ -9,20 +9,21 @@ from typing import Any
 import numpy as np
 
 from corpus_tools.core import ChosenUnit, FloatArray, Selection, Utterance
+from corpus_tools.fragments import missing_diphones
 from corpus_tools.speech import PhoneSet, lip_aperture_mm
 from corpus_tools.synthesis import weighting
-from workbench.state.effects import signal_band
+from workbench.state.effects import Effects
 from workbench.state.picks import pin_at
-from workbench.state.signals import SIGNALS
 from workbench.state.stages import Result
 from workbench.state.tokens import source_slots
 
 __all__ = [
     "FragmentDetails",
-    "aperture_band",
     "aperture_curves",
+    "band_data",
     "fragment_details",
     "joins_data",
+    "missing_of",
     "phone_rows",
     "score",
     "stand_ins",
@@ -86,16 +87,29 @@ def score(result: Result) -> dict[str, Any]:
     }
 
 
-def joins_data(result: Result) -> list[dict[str, Any]]:
-    """Return time, overlap (s), phone, gap (mm), natural percentile, ratio (None: unknown) of each join."""
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def joins_data(result: Result, other: Result | None = None) -> list[dict[str, Any]]:
+    """Return what is known of each join.
+
+    Time and overlap (s), phone, gap (mm), natural percentile, ratio of its peak acceleration to the natural
+    95th percentile, and `other`: the ratio in setting A where the same fragments meet there. None: unknown.
+    """
+    before: dict[tuple[str, str], float] = {}
+    if other is not None and other.request.same_target(result.request):
+        pairs = zip(other.trajectory.joins, other.ratios, strict=True)
+        before = {(j.left_source, j.right_source): r for j, r in pairs}
     return [
         {
             "time": j.time_s,
             "overlap": j.overlap_s,
             "phone": j.phone,
             "gap": j.gap_mm,
-            "percentile": j.natural_percentile if math.isfinite(j.natural_percentile) else None,
-            "ratio": ratio if math.isfinite(ratio) else None,
+            "percentile": _known(j.natural_percentile),
+            "ratio": _known(ratio),
+            "other": _known(before.get((j.left_source, j.right_source), math.nan)),
         }
         for j, ratio in zip(result.trajectory.joins, result.ratios, strict=True)
     ]
@@ -140,10 +154,17 @@ def aperture_curves(result: Result, other: Result | None = None) -> dict[str, An
     return found
 
 
-def aperture_band(result: Result) -> dict[str, bytes]:
+def band_data(effects: Effects | None) -> dict[str, bytes]:
     """Return the natural range of the lip aperture (float32 bytes: times s, low mm, high mm)."""
-    times, low, high = signal_band(result, SIGNALS[0])
-    return {"times": _float32(times), "low": _float32(low), "high": _float32(high)}
+    if effects is None:
+        return {}
+    return dict(zip(("times", "low", "high"), map(_float32, effects.band), strict=True))
+
+
+def missing_of(result: Result) -> tuple[tuple[str, str], ...]:
+    """Return the diphones of the target that the corpus does not hold (the held-out recording left out)."""
+    request = result.request
+    return missing_diphones(request.corpus.inventory, result.utterance.labels, request.exclude)
 
 
 def stand_ins(result: Result) -> list[str]:
@@ -176,13 +197,11 @@ class FragmentDetails:
         Where it comes from, on the clock of its source, s.
     costs : tuple of (term, value)
         Target terms, then join terms.
-    join_costs : tuple of (term, value)
-        The join terms alone.
     total : float
     backoff : tuple of (target phone, phone spoken instead)
     join : dict or None
-        The join with the fragment before it, as of :func:`joins_data`, with `gap_mm_s` and `before` (its id).
-    rejected : tuple of (source, text, target cost, join cost)
+        The join with the fragment before it, as of :func:`joins_data`, with `gap_mm_s`, and of that fragment
+        `before` (its id), `before_text` and `before_slot`.
     """
 
     index: int
@@ -194,11 +213,9 @@ class FragmentDetails:
     first_s: float
     last_s: float
     costs: tuple[tuple[str, float], ...]
-    join_costs: tuple[tuple[str, float], ...]
     total: float
     backoff: tuple[tuple[str, str], ...]
     join: dict[str, Any] | None
-    rejected: tuple[tuple[str, str, float, float], ...]
 
 
 def _source_span(result: Result, unit: ChosenUnit) -> tuple[float, float]:
@@ -211,7 +228,14 @@ def _join_before(result: Result, selection: Selection, index: int) -> dict[str, 
         return None
     join = result.trajectory.joins[index - 1]
     before = selection.chosen[index - 1].unit.recording
-    return {**joins_data(result)[index - 1], "gap_mm_s": join.gap_mm_s, "before": before}
+    slots = source_slots(tuple(c.unit.recording for c in selection.chosen))
+    return {
+        **joins_data(result)[index - 1],
+        "gap_mm_s": join.gap_mm_s,
+        "before": before,
+        "before_text": result.request.corpus.utterance(before).text,
+        "before_slot": slots[index - 1],
+    }
 
 
 def fragment_details(result: Result, index: int) -> FragmentDetails:
@@ -230,17 +254,7 @@ def fragment_details(result: Result, index: int) -> FragmentDetails:
         first_s=first_s,
         last_s=last_s,
         costs=(*unit.costs.target, *unit.costs.join),
-        join_costs=unit.costs.join,
         total=unit.costs.total,
         backoff=tuple((target, used) for _, target, used in unit.backoff),
         join=_join_before(result, selection, index),
-        rejected=tuple(
-            (
-                c.unit.recording,
-                corpus.utterance(c.unit.recording).text,
-                c.costs.target_total,
-                c.costs.join_total,
-            )
-            for c in unit.rejected
-        ),
     )

@@ -43,6 +43,13 @@ class Options:
         """First target phone of the place."""
         return self.options[0].first
 
+    def holds(self, result: Result) -> bool:
+        """Tell whether the option that is shown is what a result speaks at the place."""
+        option = self.options[self.at]
+        chosen = result.selection.chosen[fragment_at(result, option.first)]
+        same = chosen.unit.recording == option.unit.recording
+        return same and chosen.unit.first - chosen.first == option.unit.first - option.first
+
     def moved(self, step: int) -> Options:
         """Return the options with the next (or another) one shown, round and round."""
         return replace(self, at=(self.at + step) % len(self.options))

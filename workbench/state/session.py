@@ -144,8 +144,11 @@ class Session(Editing):
         if self.result is None or not self.result.request.same_target(result.request):
             self._place = 0
         selected = fragment_at(result, self._place)
+        current = result.request.config == now.config
+        if current and self.options is not None and not self.options.holds(result):
+            self.options = None
         self.param.update(result=result, selected=selected, message="")
-        if self.side == "B" and result.request.config == now.config:
+        if self.side == "B" and current:
             self.history.settle(max(result.ratios, default=0.0))
             self.edits += 1
         return True

@@ -9,10 +9,14 @@ import panel as pn
 import panel_material_ui as pmui
 
 from workbench.state import Session
-from workbench.views.controls import Controls, button
-from workbench.views.theme import style_sheet
+from workbench.views.controls import Controls, button, preset_buttons
 
 __all__ = ["AppBar", "sentence_options"]
+
+MOST_LETTERS = 1000
+"""Longest text that can be typed (our choice: about a minute of speech)."""
+
+_KINDS = {"Recording": "recording", "Text": "text"}
 
 
 def sentence_options(session: Session) -> dict[str, str]:
@@ -57,21 +61,51 @@ class AppBar(pn.viewable.Viewer):
             margin=(3, 2),
         )
         controls.tie(self.sentence, "sentence")
-        self.held_out = pn.pane.HTML("", stylesheets=[style_sheet()], margin=(10, 8))
+        self.kind = preset_buttons(controls, "What is spoken", "target_kind", _KINDS)
+        self.kind.param.update(sizing_mode=None, width=150, margin=(6, 6))
+        self.text = controls.make(
+            pmui.TextInput,
+            label="",
+            placeholder="Type a sentence, then Enter",
+            size="small",
+            variant="outlined",
+            max_length=MOST_LETTERS,
+            width=420,
+            margin=(3, 2),
+            visible=False,
+        )
+        controls.tie(self.text, "text")
+        session.param.watch(self._kind, "target_kind")
         self.theme = button(controls, "◐", description="Light or dark: T", margin=(5, 8), width=34)
         self.theme.on_click(lambda _: self.toggle_theme())
+        self.undo = button(controls, "↶ Undo", description="Undo: Ctrl Z", margin=(5, 2))
+        self.redo = button(controls, "↷", description="Redo: Ctrl Y", margin=(5, 2), width=34)
+        self.undo.on_click(lambda _: session.undo())
+        self.redo.on_click(lambda _: session.redo())
+        session.param.watch(self._edits, "edits")
         session.param.watch(self._update, ["corpus"])
+        self._edits()
         self._update()
 
     def toggle_theme(self) -> None:
         """Light to dark and back."""
         self._session.theme = "dark" if self._session.theme == "light" else "light"
 
+    def _kind(self, *events: Any) -> None:
+        have, typed = self._session.corpus is not None, self._session.target_kind == "text"
+        self.kind.visible = have
+        self.text.visible = have and typed
+        for control in (self.before, self.after, self.sentence):
+            control.visible = have and not typed
+
+    def _edits(self, *events: Any) -> None:
+        history = self._session.history
+        self.undo.param.update(disabled=not history.can_undo)
+        self.redo.param.update(disabled=not history.can_redo)
+
     def _update(self, *events: Any) -> None:
         corpus = self._session.corpus
-        have = corpus is not None
-        for control in (self.before, self.after, self.sentence):
-            control.visible = have
+        self._kind()
         if corpus is None:
             self.corpus.label = "Open a corpus"
             return
@@ -81,10 +115,14 @@ class AppBar(pn.viewable.Viewer):
     def __panel__(self) -> Any:
         return pn.Row(
             self.corpus,
+            self.kind,
             self.before,
             self.sentence,
             self.after,
+            self.text,
             pn.layout.HSpacer(),
+            self.undo,
+            self.redo,
             self.theme,
             sizing_mode="stretch_width",
             height=40,

@@ -51,15 +51,18 @@ class ExportBox(pn.viewable.Viewer):
         self._run = on_export
         self.kind, self.text = "", ""
         super().__init__(**params)
-        self.path = text_field(controls, "Config file", value=path, margin=(10, 12, 4, 12))
-        self.export = button(controls, "Export config", primary=True, margin=(2, 4, 4, 12))
-        self.line = text_field(controls, "Command that replays it", margin=(10, 12, 4, 12), visible=False)
-        self.copy = button(controls, "Copy command", margin=(2, 4), visible=False)
+        self.path = text_field(controls, "Config file", value=path, margin=(10, 4, 4, 12))
+        self.export = button(
+            controls, "Export", primary=True, margin=(12, 12, 4, 0), description="Export config: E"
+        )
+        self.line = text_field(controls, "Command that replays it", margin=(10, 4, 4, 12), visible=False)
+        self.copy = button(controls, "Copy", margin=(12, 12, 4, 0), visible=False)
         self.copy.js_on_click(args={"line": self.line}, code=_COPY)
-        self.export.on_click(lambda _: self._submit())
+        self.export.on_click(lambda _: self.submit())
         self._said = pn.pane.HTML("", stylesheets=[style_sheet()], sizing_mode="stretch_width", margin=0)
 
-    def _submit(self) -> None:
+    def submit(self) -> None:
+        """Export to the file of the field."""
         self.export.disabled = True
         self._run(self.path.value_input or self.path.value or "", self.show)
 
@@ -75,10 +78,9 @@ class ExportBox(pn.viewable.Viewer):
 
     def __panel__(self) -> Any:
         return pn.Column(
-            self.path,
-            pn.Row(self.export, self.copy, margin=0),
+            pn.Row(self.path, self.export, sizing_mode="stretch_width", margin=0),
             self._said,
-            self.line,
+            pn.Row(self.line, self.copy, sizing_mode="stretch_width", margin=0),
             sizing_mode="stretch_width",
             margin=0,
         )

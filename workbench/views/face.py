@@ -9,6 +9,7 @@ import panel as pn
 import pyvista.plotting
 
 from corpus_tools.core import Mesh
+from corpus_tools.mesh import Binding, mesh_by_name_or_file
 from corpus_tools.pipeline import Head
 from corpus_tools.render import PART_STYLES, part_surface
 from workbench.state import Result
@@ -25,13 +26,14 @@ _AROUND_DEG = 22.0
 _ABOVE_DEG = 3.0
 
 
-def head_actors(head: Head) -> list[dict[str, Any]]:
-    """Return one actor for every part of the mesh; the parts that the basis moves carry their rows of it."""
+def head_actors(mesh: Mesh, binding: Binding | None = None) -> list[dict[str, Any]]:
+    """Return one actor for every part of a mesh; those that a binding moves carry their rows of its basis."""
     found = []
-    for part in head.mesh.part_names:
-        surface = part_surface(head.mesh, part)
-        used = np.asarray(surface.point_data["vertex"])
-        basis = head.binding.response(used)
+    for part in mesh.part_names:
+        surface = part_surface(mesh, part)
+        basis = np.zeros(0)
+        if binding is not None:
+            basis = binding.response(np.asarray(surface.point_data["vertex"]))
         style: dict[str, Any] = dict(PART_STYLES.get(part, _OTHER))
         if "colour" in surface.point_data:
             style["colours"] = np.asarray(surface.point_data["colour"])
@@ -70,6 +72,7 @@ class Face(pn.viewable.Viewer):
     def __init__(self, clock: str, theme: str, **params: Any) -> None:
         super().__init__(**params)
         self._head: Head | None = None
+        self.result: Result | None = None
         self.mesh_view = MeshView(session=clock, theme=theme, description="Talking head")
         self.view = self.mesh_view
 
@@ -82,11 +85,19 @@ class Face(pn.viewable.Viewer):
     def theme(self, theme: str) -> None:
         self.mesh_view.theme = theme
 
+    def show_rest(self, name: str) -> None:
+        """Show a head by name at rest, before there is anything that moves it."""
+        mesh = mesh_by_name_or_file(name)
+        self.mesh_view.show_actors(head_actors(mesh), camera=head_camera(mesh))
+
     def show(self, result: Result) -> None:
         """Show the head of a result and let it move."""
+        self.result = result
         if result.head is not self._head:
             self._head = result.head
-            self.mesh_view.show_actors(head_actors(result.head), camera=head_camera(result.head.mesh))
+            self.mesh_view.show_actors(
+                head_actors(result.head.mesh, result.head.binding), camera=head_camera(result.head.mesh)
+            )
         parts = {actor["name"] for actor in self.mesh_view.actors}
         moving = {a["name"] for a in self.mesh_view.actors if a["basis"]}
         trajectory = result.trajectory

@@ -1,12 +1,14 @@
-"""The inspector's account of one fragment: where it comes from, why it was chosen, what was turned down."""
+"""The inspector's account of one fragment: its join, why it was chosen, what else could speak the place."""
 
 from __future__ import annotations
 
 import html
+from collections.abc import Callable
 
-from workbench.state import FragmentDetails, tokens
+from workbench.state import FragmentDetails, Options, tokens
+from workbench.views.action_html import action_button
 
-__all__ = ["details_html"]
+__all__ = ["bans_html", "details_html", "options_html"]
 
 _TERMS = {
     "timing": "timing",
@@ -23,40 +25,49 @@ def _escape(text: object) -> str:
     return html.escape(str(text))
 
 
-def _verdict(percentile: float | None) -> str:
-    if percentile is None:
+def _verdict(ratio: float | None) -> str:
+    if ratio is None:
         return ""
-    if percentile > 95:
+    if ratio > 1.0:
         return '<span class="end badge warn">▲ above p95</span>'
     return '<span class="end badge ok">✓ natural</span>'
 
 
-def _join_html(details: FragmentDetails) -> str:
+def _source(name: str, text: str, colour: str) -> str:
+    return f'<i class="dot" style="background:{colour}"></i><b>{_escape(name)}</b> “{_escape(text)}”'
+
+
+def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -> str:
     join = details.join
     if join is None:
-        return "<section><h3>Start of the sentence</h3><p>No join before this fragment.</p></section>"
-    percentile = join["percentile"]
-    peak = "unknown" if percentile is None else f"natural p{percentile:.0f}"
+        return "<dt>Join</dt><dd>none: the sentence begins here</dd>"
+    ratio = join["ratio"]
+    peak = "unknown" if ratio is None else f"{ratio:.2f} × natural p95"
+    frames = round(join["overlap"] * frames_hz)
+    colour = colours[join["before_slot"] % len(colours)]
     return (
-        f"<section><h3>Join {details.index} of {details.n_fragments - 1} at {_escape(join['phone'])}, "
-        f"{join['time']:.2f} s{_verdict(percentile)}</h3><dl>"
-        f"<dt>Out of</dt><dd>{_escape(join['before'])}</dd>"
+        f'<dt>Out</dt><dd title="{_escape(join["before"])}: {_escape(join["before_text"])}">'
+        f"{_source(join['before'], join['before_text'], colour)}</dd>"
         f"<dt>Peak accel.</dt><dd>{peak}</dd>"
-        f"<dt>Overlap</dt><dd>{1000 * join['overlap']:.0f} ms</dd>"
-        f"<dt>Gap before</dt><dd>{join['gap']:.2f} mm, {join['gap_mm_s']:.0f} mm/s</dd></dl></section>"
+        f"<dt>Overlap</dt><dd>{1000 * join['overlap']:.0f} ms, {frames} frames</dd>"
+        f"<dt>Gap before</dt><dd>{join['gap']:.2f} mm, {join['gap_mm_s']:.0f} mm/s</dd>"
     )
 
 
-def _source_html(details: FragmentDetails, colour: str) -> str:
+def _head_html(details: FragmentDetails, colours: list[str], frames_hz: float) -> str:
+    join = details.join
+    where = f" · {_escape(join['phone'])}, {join['time']:.2f} s" if join else ""
     backoff = "".join(
         f'<dt class="warn">▲ stand-in</dt><dd class="warn">{_escape(a)} spoken as {_escape(b)}</dd>'
         for a, b in details.backoff
     )
+    colour = colours[details.slot % len(colours)]
+    role, title = "In" if join else "Source", f"{_escape(details.source)}: {_escape(details.text)}"
     return (
-        f"<section><h3>Fragment {details.index + 1} of {details.n_fragments}</h3><dl>"
-        f'<dt>Source</dt><dd><i class="dot" style="background:{colour}"></i>'
-        f"<b>{_escape(details.source)}</b></dd>"
-        f'<dt>Sentence</dt><dd class="wrap">“{_escape(details.text)}”</dd>'
+        f"<section><h3>Fragment {details.index + 1} of {details.n_fragments}{where}"
+        f"{_verdict(join['ratio'] if join else None)}</h3><dl>"
+        f"{_join_html(details, colours, frames_hz)}"
+        f'<dt>{role}</dt><dd title="{title}">{_source(details.source, details.text, colour)}</dd>'
         f'<dt>Phones</dt><dd class="wrap">{_escape(details.phones)}</dd>'
         f"<dt>Taken from</dt><dd>{details.first_s:.3f}–{details.last_s:.3f} s</dd>{backoff}</dl></section>"
     )
@@ -76,28 +87,60 @@ def _costs_html(details: FragmentDetails, colour: str) -> str:
     )
 
 
-def _rejected_html(details: FragmentDetails) -> str:
-    if not details.rejected:
-        return "<section><h3>Alternatives</h3><p>No other fragment covers these phones.</p></section>"
-    target = sum(v for _, v in details.costs) - sum(v for _, v in details.join_costs)
-    rows = [
-        f'<tr class="now"><td>{_escape(details.source)}</td><td>{_escape(details.text)}</td>'
-        f'<td class="num">{target:.2f}</td><td class="num">{details.total - target:.2f}</td></tr>'
-    ]
-    rows += [
-        f'<tr title="{_escape(source)}: {_escape(text)}"><td>{_escape(source)}</td><td>{_escape(text)}</td>'
-        f'<td class="num">{cost:.2f}</td><td class="num">{join:.2f}</td></tr>'
-        for source, text, cost, join in details.rejected
-    ]
+def options_html(options: Options, text_of: Callable[[str], str], pinned: bool) -> str:
+    """Return the units that could speak the selected place, as a list to choose from.
+
+    Parameters
+    ----------
+    options : Options
+    text_of : callable
+        Words of a recording.
+    pinned : bool
+        Whether the place is pinned.
+    """
+    rows, most = [], max(o.last - o.first for o in options.options)
+    for index, option in enumerate(options.options):
+        name, costs = option.unit.recording, option.costs
+        terms = ", ".join(f"{_TERMS.get(k, k)} {v:.2f}" for k, v in (*costs.target, *costs.join))
+        n = option.last - option.first
+        short = f' <span class="warn">{n + 1} ph.</span>' if n < most else ""
+        now = ' class="now" aria-selected="true"' if index == options.at else ""
+        rows.append(
+            f'<tr{now} role="option" tabindex="{0 if index == options.at else -1}" data-action="swap" '
+            f'data-value="{index}" title="{_escape(name)}: {_escape(text_of(name))} · {_escape(terms)}">'
+            f"<td>{_escape(name)}{short}</td><td>{_escape(text_of(name))}</td>"
+            f'<td class="num">{costs.target_total:.2f}</td><td class="num">{costs.join_total:.2f}</td></tr>'
+        )
+    n = len(options.options)
+    buttons = (
+        action_button("step", "Swap", "Alt ↓", "1", disabled=n < 2, title="Let the next one speak here")
+        + action_button("pin", "Unpin" if pinned else "Pin", "K", pressed=pinned, title="Keep it here")
+        + action_button("ban", "Ban", "B", title="Never use this unit")
+        + action_button("hear", "Hear", "H", title="Play the fragment in its own recording")
+    )
     return (
-        f'<section><h3>Alternatives turned down<span class="end">{len(details.rejected)}</span></h3><table>'
-        '<colgroup><col style="width:62px"><col><col style="width:46px"><col style="width:46px"></colgroup>'
-        '<tr><th>Source</th><th>Sentence</th><th class="num">Target</th><th class="num">Join</th></tr>'
-        f"{''.join(rows)}</table></section>"
+        f'<section><h3>Alternatives<span class="end">{options.at + 1} of {n}</span></h3>'
+        '<table><colgroup><col style="width:84px"><col><col style="width:44px"><col style="width:40px">'
+        '</colgroup><thead><tr><th>Source</th><th>Sentence</th><th class="num">Target</th>'
+        '<th class="num">Join</th></tr></thead>'
+        '<tbody data-list="options" data-follow role="listbox" aria-label="What could speak this place">'
+        f'{"".join(rows)}</tbody></table><div class="buttons">{buttons}</div></section>'
     )
 
 
-def details_html(details: FragmentDetails | None, theme: str) -> str:
+def bans_html(bans: tuple[str, ...]) -> str:
+    """Return the banned units, each with a button that allows it again; empty without any."""
+    if not bans:
+        return ""
+    rows = "".join(
+        f"<dt>{_escape(ban)}</dt><dd>{action_button('unban', 'Allow again', value=ban)}</dd>" for ban in bans
+    )
+    return (
+        f'<section><h3>Banned<span class="end">{len(bans)}</span></h3><dl class="wide">{rows}</dl></section>'
+    )
+
+
+def details_html(details: FragmentDetails | None, theme: str, frames_hz: float = 120.0) -> str:
     """Return the inspector's account of a fragment as HTML; every text is escaped.
 
     Parameters
@@ -106,15 +149,12 @@ def details_html(details: FragmentDetails | None, theme: str) -> str:
         None while there is no result yet.
     theme : str
         "light" or "dark": the source's colour is set in the text.
+    frames_hz : float
+        Frame rate of the motion.
     """
     if details is None:
-        return '<div class="vsw-html"><section><h3>No fragment selected</h3></section></div>'
+        return "<section><h3>No fragment selected</h3><p>There is no result yet.</p></section>"
     colours = list(tokens(theme).sources.values())
-    colour = colours[details.slot % len(colours)]
-    parts = (
-        _source_html(details, colour),
-        _join_html(details),
-        _costs_html(details, colour),
-        _rejected_html(details),
+    return _head_html(details, colours, frames_hz) + _costs_html(
+        details, colours[details.slot % len(colours)]
     )
-    return f'<div class="vsw-html">{"".join(parts)}</div>'

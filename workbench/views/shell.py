@@ -83,7 +83,12 @@ class Shell(pn.custom.JSComponent):
 class Board(pn.custom.JSComponent):
     """The work area of the blend page: face, g(u) and lane as cards.
 
-    `stale` greys what is shown while something newer is computed; `message` stands in the lane.
+    `stale` greys what is shown while something newer is computed; `message` and `warning` stand in the lane.
+
+    Parameters
+    ----------
+    on_action : callable, optional
+        ``on_action(id)`` of a button in a card.
     """
 
     face = pn.custom.Child()
@@ -96,10 +101,23 @@ class Board(pn.custom.JSComponent):
     lane_text = param.String(default="")
     held_out_text = param.String(default="")
     message = param.String(default="")
+    warning = param.String(default="", doc="What stood in where the corpus has nothing.")
+    hint = param.String(default="", doc="What to do where there is nothing to show yet.")
+    title = param.String(default="", doc="Headline over the progress.")
+    fraction = param.Number(default=0.0, doc="Progress of a corpus that is being made or opened, 0-1.")
+    doing = param.String(default="", doc="What is being done; empty when nothing is.")
+    left_text = param.String(default="", doc="How long it will take.")
     stale = param.Boolean(default=False)
+    side = param.Selector(default="B", objects=["A", "B"], doc="Which of two settings is shown.")
+    compared = param.Boolean(default=False, doc="Whether the two settings differ.")
 
     _esm = esm("board", "renderBoard")
     _stylesheets: ClassVar[list[Any]] = [style_sheet()]
 
-    def __init__(self, **params: Any) -> None:
+    def __init__(self, on_action: Callable[[str], None] | None = None, **params: Any) -> None:
+        self._on_action = on_action
         super().__init__(**{"sizing_mode": "stretch_both", **params})
+
+    def _handle_msg(self, data: Any) -> None:
+        if data.get("type") == "action" and self._on_action is not None:
+            self._on_action(str(data["id"]))

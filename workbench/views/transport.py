@@ -79,6 +79,10 @@ class Transport(pn.custom.JSComponent):
         """Play a stretch; a browser allows sound only after the person has touched the page."""
         self._send_msg({"op": "play", "from": from_s, "to": 1e9 if to_s is None else to_s})
 
+    def hear(self, sound: Audio) -> None:
+        """Play another sound once; the clock stands still."""
+        self._send_msg({"op": "hear", "pcm": pcm16(sound.samples), "rate": int(sound.rate_hz)})
+
     def seek(self, time_s: float) -> None:
         """Put the clock at a time."""
         self._send_msg({"op": "seek", "t": time_s})

@@ -9,8 +9,8 @@ from workbench.state import (
     OVERLAPS_S,
     Session,
     Stages,
-    aperture_band,
     aperture_curves,
+    band_data,
     compute_effects,
     score,
     stand_ins,
@@ -210,7 +210,7 @@ def test_curves_hold_the_pieces_the_other_setting_and_the_natural_range(visit):
     assert len(curves["pieces"]) == len(session.result.selection.chosen)
     assert len(curves["other"]) == len(curves["blend"])
     assert curves["other"] != curves["blend"]
-    band = aperture_band(session.result)
+    band = band_data(compute_effects(session.result))
     assert len(band["times"]) == len(band["low"]) == len(band["high"]) > 0
 
 

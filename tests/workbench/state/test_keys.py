@@ -21,6 +21,8 @@ def test_captions():
     assert captions["curve"] == "1–7"
     assert captions["from_start"] == "Shift Space"
     assert captions["zoom_in"] == "+"
+    assert captions["undo"] == "Ctrl Z"
+    assert captions["next_unit"] == "Alt ↓"
     assert key_label("j") == "J"
 
 

@@ -1,0 +1,52 @@
+/**
+ * HTML made in Python whose buttons and rows act: whatever has a `data-action` sends it with its `data-value`.
+ * Rows of a `data-list` are walked with the arrow keys; the focus survives when the text is written anew.
+ */
+
+function placeOf(node) {
+  const { action, value } = node?.dataset ?? {};
+  return action && `[data-action="${CSS.escape(action)}"][data-value="${CSS.escape(value ?? "")}"]`;
+}
+
+/** Panel entry point. */
+export function renderHtml({ model, el }) {
+  const root = document.createElement("div");
+  root.className = "vsw-html";
+  const focused = () => root.getRootNode().activeElement;
+  const draw = () => {
+    const had = root.contains(focused()) ? focused() : null;
+    const place = placeOf(had);
+    const list = had?.closest("[data-list]")?.dataset.list;
+    root.innerHTML = model.html;
+    if (!had) return;
+    const same = place && root.querySelector(place);
+    const inList = list && root.querySelector(`[data-list="${CSS.escape(list)}"] .now[data-action]`);
+    (inList || same)?.focus({ preventScroll: true });
+  };
+  const act = (node) => model.send_msg({ action: node.dataset.action, value: node.dataset.value ?? "" });
+  root.addEventListener("click", (event) => {
+    const node = event.target.closest("[data-action]");
+    if (!node || node.disabled) return;
+    node.focus({ preventScroll: true });
+    act(node);
+  });
+  root.addEventListener("keydown", (event) => {
+    const node = event.target.closest("[data-action]");
+    if (!node || event.altKey || event.ctrlKey || event.metaKey) return;
+    const rows = [...(node.closest("[data-list]")?.querySelectorAll("[data-action]") ?? [])];
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step && rows.length) {
+      event.preventDefault();
+      event.stopPropagation();
+      const next = rows[(rows.indexOf(node) + step + rows.length) % rows.length];
+      next.focus();
+      if (node.closest("[data-list]").dataset.follow !== undefined) act(next);
+    } else if (event.key === "Enter" && node.tagName !== "BUTTON") {
+      event.preventDefault();
+      act(node);
+    }
+  });
+  model.on("html", draw);
+  draw();
+  return root;
+}

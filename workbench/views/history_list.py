@@ -1,0 +1,75 @@
+"""The history of settings and the comparison of two, as HTML that acts."""
+
+from __future__ import annotations
+
+import html
+import math
+import time
+
+from workbench.state import Entry, Session
+from workbench.views.action_html import action_button
+
+__all__ = ["compare_html", "history_html"]
+
+SHOWN = 12
+
+
+def _ratio(value: float) -> str:
+    return f"{value:.2f}" if math.isfinite(value) else "–"
+
+
+def _row(entry: Entry, here: bool) -> str:
+    clock = time.strftime("%H:%M:%S", time.localtime(entry.when_s))
+    high = ' class="num warn"' if entry.effect > 1.0 else ' class="num"'
+    now = ' class="now" aria-selected="true"' if here else ""
+    text = html.escape(entry.what)
+    return (
+        f'<tr{now} role="option" tabindex="{0 if here else -1}" data-action="go" data-value="{entry.number}" '
+        f'title="{clock} · {text}"><td>{clock}</td><td>{text}</td><td{high}>{_ratio(entry.effect)}</td></tr>'
+    )
+
+
+def history_html(session: Session) -> str:
+    """Return the latest states, the newest first; a click goes back to one.
+
+    The number is the worst join of the state: peak acceleration over the natural 95th percentile.
+    """
+    history = session.history
+    if not history.entries:
+        return ""
+    rows = [_row(e, e.number == history.at) for e in history.entries[: -SHOWN - 1 : -1]]
+    return (
+        f'<section><h3>History<span class="end">{len(history.entries)}</span></h3><table>'
+        '<colgroup><col style="width:56px"><col><col style="width:44px"></colgroup>'
+        '<thead><tr><th>When</th><th>What</th><th class="num">Worst</th></tr></thead>'
+        f'<tbody data-list="history" role="listbox" aria-label="States of this session">{"".join(rows)}'
+        "</tbody></table></section>"
+    )
+
+
+def _worst(ratios: tuple[float, ...]) -> str:
+    return f"worst join {_ratio(max(ratios))}" if ratios else "no joins"
+
+
+def compare_html(session: Session) -> str:
+    """Return what B has changed from A, and what that does to the worst join."""
+    result, other = session.result, session.other
+    difference = session.difference
+    if result is None:
+        return ""
+    a, b = (other, result) if session.side == "B" else (result, other)
+    if not difference:
+        told = "<p>A and B are equal: change a setting.</p>"
+    else:
+        rows = f"<dt>A</dt><dd>{_worst(a.ratios) if a else '…'}</dd>"
+        rows += f'<dt class="acc">B</dt><dd>{_worst(b.ratios) if b else "…"}</dd>'
+        rows += f'<dt>A → B</dt><dd class="wrap">{html.escape(difference)}</dd>'
+        told = f"<dl>{rows}</dl>"
+    buttons = action_button(
+        "sides", f"Show {'A' if session.side == 'B' else 'B'}", "X", disabled=not difference
+    )
+    buttons += action_button(
+        "keep", "Keep as A", disabled=not difference, title="Compare with this from now on"
+    )
+    shown = f'<span class="end">showing {session.side}</span>' if difference else ""
+    return f'<section><h3>Compare{shown}</h3>{told}<div class="buttons">{buttons}</div></section>'
