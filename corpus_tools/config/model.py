@@ -64,7 +64,8 @@ def _sentence(error: Mapping[str, Any], where: str) -> str:
         known = _known_keys(place[:-1])
         hint = suggestion(str(place[-1]), known) or f"; known here: {', '.join(known)}."
         return f"{where}: unknown key '{key}'{hint}"
-    return f"{where}: '{key}' is {error.get('input')!r}: {error['msg'][0].lower()}{error['msg'][1:]}."
+    what = str(error["msg"]).removeprefix("Value error, ")
+    return f"{where}: '{key}' is {error.get('input')!r}: {what[0].lower()}{what[1:]}."
 
 
 def config_from_dict(data: Mapping[str, Any], where: str = "config") -> ConfigBase:

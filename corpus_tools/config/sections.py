@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from corpus_tools.core import Registry
+from corpus_tools.synthesis import DEFAULT_CURVE
 
 __all__ = [
     "SECTIONS",
@@ -111,11 +112,24 @@ class BlendSettings(Section):
 
     weighting: str = Field("smootherstep", description="g(u), by name.")
     shape: float = Field(0.0, ge=-1, le=1, description="Moves the crossover of g(u): early -1 .. late +1.")
+    curve_weights: tuple[Annotated[float, Field(ge=0, le=1e6)], ...] = Field(
+        DEFAULT_CURVE,
+        min_length=4,
+        max_length=64,
+        description="g(u) 'user': weights of its slope from first to last; two 0 at either end make it C2.",
+    )
     rule: Literal["shared-phone", "paper"] = Field("shared-phone", description="What limits the overlap.")
     overlap_s: float = Field(0.12, ge=0, le=0.5, description="Longest overlap, s.")
     fraction: float = Field(
         0.5, gt=0, le=1, description="Rule 'paper': share of the smallest phone interval."
     )
+
+    @field_validator("curve_weights")
+    @classmethod
+    def _falls(cls, weights: tuple[float, ...]) -> tuple[float, ...]:
+        if not any(weights):
+            raise ValueError("all weights are 0, so that g(u) would not fall")
+        return weights
 
 
 @section("closure")

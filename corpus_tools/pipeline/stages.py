@@ -132,15 +132,7 @@ def blend_units(
     corpus: OpenCorpus, utterance: Utterance, pieces: AlignedPieces, config: ConfigBase
 ) -> Trajectory:
     """Blend aligned fragments and close the lips: the quick part that a slider of g(u) calls."""
-    blended = blend_pieces(
-        pieces,
-        weighting=config.blend.weighting,
-        shape=config.blend.shape,
-        rule=config.blend.rule,
-        overlap_s=config.blend.overlap_s,
-        fraction=config.blend.fraction,
-        natural=corpus.natural,
-    )
+    blended = blend_pieces(pieces, **config.blend.model_dump(), natural=corpus.natural)
     if not config.closure.project:
         return blended
     return close_bilabials(corpus.lips, blended, utterance, corpus.phones, config.closure.iterations)

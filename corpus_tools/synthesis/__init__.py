@@ -18,10 +18,12 @@ from corpus_tools.synthesis.model import PhoneClasses, SelectionModel, prepare_s
 from corpus_tools.synthesis.overlap import overlap_lengths
 from corpus_tools.synthesis.pieces import AlignedPieces, Piece, align_fragments
 from corpus_tools.synthesis.resampling import TimeRbf, fit_time_rbf, fit_uniform_rbf, resample_uniform
+from corpus_tools.synthesis.usercurve import DEFAULT_CURVE, curve_order, curve_through, user_weighting
 from corpus_tools.synthesis.viterbi import select_viterbi
 from corpus_tools.synthesis.weighting import WEIGHTINGS, weighting
 
 __all__ = [
+    "DEFAULT_CURVE",
     "WEIGHTINGS",
     "AlignedPieces",
     "EffectCurve",
@@ -39,6 +41,8 @@ __all__ = [
     "blend_weights",
     "close_lips",
     "closure_direction",
+    "curve_order",
+    "curve_through",
     "effect_curves",
     "fit_time_rbf",
     "fit_uniform_rbf",
@@ -58,5 +62,6 @@ __all__ = [
     "rms_acceleration",
     "select_greedy",
     "select_viterbi",
+    "user_weighting",
     "weighting",
 ]

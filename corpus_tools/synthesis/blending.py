@@ -12,6 +12,7 @@ from corpus_tools.synthesis.alignment import WarpKind
 from corpus_tools.synthesis.joins import NaturalDistribution, join_gaps, natural_percentiles
 from corpus_tools.synthesis.overlap import OverlapRule, overlap_lengths
 from corpus_tools.synthesis.pieces import MARGIN_S, AlignedPieces, Resampling, align_fragments
+from corpus_tools.synthesis.usercurve import DEFAULT_CURVE
 from corpus_tools.synthesis.weighting import Weighting
 from corpus_tools.synthesis.weighting import weighting as weighting_function
 
@@ -49,6 +50,7 @@ def blend_pieces(
     *,
     weighting: str = "smootherstep",
     shape: float = 0.0,
+    curve_weights: Sequence[float] = DEFAULT_CURVE,
     rule: OverlapRule = "shared-phone",
     overlap_s: float = 0.12,
     fraction: float = 0.5,
@@ -63,6 +65,8 @@ def blend_pieces(
         g(u) by name.
     shape : float
         Its crossover, -1 to 1.
+    curve_weights : sequence of float
+        Of the slope of g(u) when it is the user's own ("user").
     rule, overlap_s, fraction
         As of :func:`~corpus_tools.synthesis.overlap.overlap_lengths`; an overlap is never longer than the
         motion that aligned pieces keep around their joins (2 :data:`MARGIN_S`).
@@ -77,9 +81,9 @@ def blend_pieces(
     Raises
     ------
     InputError
-        There is no such g(u), or its shape is out of range.
+        There is no such g(u), or its shape or its weights are out of range.
     """
-    g = weighting_function(weighting, shape)
+    g = weighting_function(weighting, shape, curve_weights)
     phones = aligned.utterance.phones.intervals
     longest = min(overlap_s, 2.0 * MARGIN_S)
     overlaps = overlap_lengths(phones, aligned.join_phones, rule, longest, fraction)
@@ -92,7 +96,10 @@ def blend_pieces(
         share = weight[span]
         values[span] += share[:, None, None] * piece.motion_mm
         flags[span] |= np.where(share[:, None] > 0, piece.flags, 0).astype(np.uint8)
-    done = step("blend", weighting=weighting, shape=shape, rule=rule, overlap_s=overlap_s, fraction=fraction)
+    own = {"curve_weights": ",".join(f"{w:g}" for w in curve_weights)} if weighting == "user" else {}
+    done = step(
+        "blend", weighting=weighting, shape=shape, rule=rule, overlap_s=overlap_s, fraction=fraction, **own
+    )
     joins = join_gaps(aligned, overlaps)
     result = Trajectory(
         aligned.times_s, values, aligned.names, joins, flags, (step("align", **dict(aligned.settings)), done)
@@ -113,6 +120,7 @@ def render_selection(
     rate_hz: float = 120.0,
     weighting: str = "smootherstep",
     shape: float = 0.0,
+    curve_weights: Sequence[float] = DEFAULT_CURVE,
     rule: OverlapRule = "shared-phone",
     overlap_s: float = 0.12,
     fraction: float = 0.5,
@@ -143,6 +151,7 @@ def render_selection(
         aligned,
         weighting=weighting,
         shape=shape,
+        curve_weights=curve_weights,
         rule=rule,
         overlap_s=overlap_s,
         fraction=fraction,

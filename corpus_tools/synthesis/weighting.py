@@ -7,11 +7,12 @@ here and a line of the registry; the laws in the tests run over every entry.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from corpus_tools.core import FloatArray, InputError, Registry
+from corpus_tools.synthesis.usercurve import DEFAULT_CURVE, user_weighting
 
 __all__ = ["WEIGHTINGS", "crossover", "weighting"]
 
@@ -66,6 +67,16 @@ def sigmoid(u: FloatArray) -> FloatArray:
     return np.asarray(0.5 - 0.5 * np.tanh(5.0 * (u - 0.5)) / edge)
 
 
+@WEIGHTINGS.register("bump")
+def bump(u: FloatArray) -> FloatArray:
+    """Fall as exp(-1/(1-u)) / (exp(-1/u) + exp(-1/(1-u))); every derivative is zero at both ends."""
+    with np.errstate(divide="ignore", over="ignore"):
+        return np.asarray(1.0 / (1.0 + np.exp(1.0 / (1.0 - u) - 1.0 / u)))
+
+
+WEIGHTINGS.add("user", user_weighting(DEFAULT_CURVE))
+
+
 def crossover(u: FloatArray, shape: float) -> FloatArray:
     """Move the crossover of a weighting: u' = u / (u + (1 - u) e^(2 shape)).
 
@@ -77,7 +88,7 @@ def crossover(u: FloatArray, shape: float) -> FloatArray:
     return np.asarray(u / (u + (1.0 - u) * np.exp(2.0 * shape)))
 
 
-def weighting(name: str, shape: float = 0.0) -> Weighting:
+def weighting(name: str, shape: float = 0.0, curve_weights: Sequence[float] = DEFAULT_CURVE) -> Weighting:
     """Return g(u) by name, with its crossover moved.
 
     Parameters
@@ -86,6 +97,9 @@ def weighting(name: str, shape: float = 0.0) -> Weighting:
         A name of :data:`WEIGHTINGS`.
     shape : float
         -1 (early) to 1 (late).
+    curve_weights : sequence of float
+        Of the curve "user" (:func:`~corpus_tools.synthesis.usercurve.user_weighting`); the others do not
+        look at them.
 
     Returns
     -------
@@ -95,9 +109,9 @@ def weighting(name: str, shape: float = 0.0) -> Weighting:
     Raises
     ------
     InputError
-        There is no such g(u), or `shape` lies outside [-1, 1].
+        There is no such g(u), `shape` lies outside [-1, 1], or the weights of the user's curve are none.
     """
-    function = WEIGHTINGS[name]
+    function = user_weighting(curve_weights) if name == "user" else WEIGHTINGS[name]
     if not -1.0 <= shape <= 1.0:
         raise InputError(
             f"The shape of g(u) is {shape:g}; a number from -1 (early) to 1 (late) was expected."

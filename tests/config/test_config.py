@@ -23,6 +23,7 @@ NUMBERS = st.fixed_dictionaries(
     {
         "blend__shape": st.floats(-1, 1),
         "blend__overlap_s": st.floats(0, 0.5),
+        "blend__curve_weights": st.lists(st.floats(0.1, 9), min_size=4, max_size=9),
         "blend__rule": st.sampled_from(["shared-phone", "paper"]),
         "selection__join": st.floats(0, 100),
         "selection__prune": st.integers(1, 10_000),
@@ -67,6 +68,9 @@ def test_every_field_is_written_bounded_and_described(name):
         ({"blend": {"shape": 3}}, ["blend.shape", "3", "less than or equal to 1"]),
         ({"blend": {"shape": float("nan")}}, ["blend.shape", "finite"]),
         ({"blend": {"rule": "longest"}}, ["blend.rule", "shared-phone"]),
+        ({"blend": {"curve_weights": [1, 2, 3]}}, ["blend.curve_weights", "at least 4"]),
+        ({"blend": {"curve_weights": [1, 2, -3, 1]}}, ["blend.curve_weights.2", "-3", "greater than"]),
+        ({"blend": {"curve_weights": [0, 0, 0, 0]}}, ["blend.curve_weights", "all weights are 0"]),
         ({"schema": 99}, ["schema", "99"]),
         ({"blend": 3}, ["blend"]),
     ],

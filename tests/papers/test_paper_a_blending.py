@@ -18,8 +18,10 @@ from corpus_tools.synthesis import (
 )
 from tests.strategies.fragments import NAMES, band_limited, make_target, own_clock, seeds, spliced
 
+weights = st.lists(st.floats(0, 5), min_size=4, max_size=20).filter(any)
 durations = st.lists(st.floats(0.02, 0.4), min_size=4, max_size=30)
-DECAY = ("exponential", "sigmoid", "septic", "smootherstep", "raised-cosine", "smoothstep", "linear")
+DECAY = ("exponential", "sigmoid", "septic", "bump", "smootherstep", "raised-cosine", "smoothstep", "user")
+DECAY += ("linear",)
 
 
 def test_figure_3_the_weighting_functions_are_different_curves():
@@ -35,6 +37,19 @@ def test_the_speed_of_decay_says_how_fast_the_second_fragment_is_faded_in():
     assert steepest == sorted(steepest, reverse=True)
     exponential, linear = weighting("exponential")(u), weighting("linear")(u)
     assert (exponential[1:-1] < linear[1:-1]).all()
+
+
+@given(seeds, st.sampled_from([*WEIGHTINGS]), weights)
+def test_equation_2_blends_two_fragments_by_g_of_u(seed, name, curve_weights):
+    """theta_blend = g(u) theta_0 + (1 - g(u)) theta_1 with u from 0 to 1 over the overlap, for any g."""
+    aligned = align_fragments(*spliced(np.random.default_rng(seed), n_units=2), names=NAMES)
+    trajectory = blend_pieces(aligned, weighting=name, curve_weights=curve_weights)
+    (join,), (left, right) = trajectory.joins, aligned.pieces
+    u = (trajectory.times_s - join.time_s) / join.overlap_s + 0.5
+    inside = np.flatnonzero((u >= 0) & (u <= 1))
+    g = weighting(name, curve_weights=curve_weights)(u[inside])[:, None, None]
+    theta_0, theta_1 = left.motion_mm[inside - left.start], right.motion_mm[inside - right.start]
+    np.testing.assert_allclose(trajectory.values_mm[inside], g * theta_0 + (1 - g) * theta_1, atol=1e-9)
 
 
 @given(durations, st.floats(0.05, 1), st.floats(0, 0.5))

@@ -9,6 +9,7 @@ from typing import Any
 import param
 
 from corpus_tools.config import ConfigBase, config_from_dict, config_with
+from corpus_tools.synthesis import DEFAULT_CURVE
 from workbench.state.history import History, change_text
 from workbench.state.picks import Options
 
@@ -18,6 +19,7 @@ SETTINGS = {
     "method": "selection__method",
     "weighting": "blend__weighting",
     "shape": "blend__shape",
+    "curve_weights": "blend__curve_weights",
     "overlap_s": "blend__overlap_s",
     "rule": "blend__rule",
     "mesh": "deform__mesh",
@@ -54,6 +56,7 @@ class Editing(param.Parameterized):
     method = param.String(default="viterbi")
     weighting = param.String(default="smootherstep")
     shape = param.Number(default=0.0, bounds=(-1.0, 1.0))
+    curve_weights = param.ClassSelector(class_=tuple, default=DEFAULT_CURVE, doc="Of the curve 'user'.")
     overlap_s = param.Number(default=0.12, bounds=(0.0, 0.5))
     rule = param.Selector(default="shared-phone", objects=["shared-phone", "paper"])
     mesh = param.String(default="base")

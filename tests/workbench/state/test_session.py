@@ -7,6 +7,7 @@ import pytest
 
 from corpus_tools.config import load_config
 from corpus_tools.core import ConfigError, InputError
+from corpus_tools.synthesis import curve_through
 from workbench.actions import CorpusCache, Desk, export_config
 from workbench.state import SETTINGS, Session, Stages, aperture_curves, fragment_details, joins_data, score
 
@@ -38,6 +39,7 @@ def test_every_setting_reaches_the_config(opened):
         "method": "greedy",
         "weighting": "linear",
         "shape": 0.25,
+        "curve_weights": (0.0, 0.0, 1.0, 3.0, 0.0, 0.0),
         "overlap_s": 0.08,
         "rule": "paper",
         "mesh": "male",
@@ -50,7 +52,7 @@ def test_every_setting_reaches_the_config(opened):
     config = session.config.values()
     for name, place in SETTINGS.items():
         part, _, key = place.partition("__")
-        assert config[part][key] == (list(values[name]) if name in ("pins", "bans") else values[name])
+        assert config[part][key] == (list(v) if isinstance(v := values[name], tuple) else v)
     other = Session()
     other.load_config(session.config)
     assert other.config == session.config
@@ -76,6 +78,15 @@ def test_every_blend_setting_moves_the_mouth(session, stages, name, value):
     first = stages.run(session.request())
     assert len(first.selection.chosen) > 1
     setattr(session, name, value)
+    second = stages.run(session.request())
+    assert second.ran == BLEND
+    assert not np.array_equal(second.trajectory.values_mm, first.trajectory.values_mm)
+
+
+def test_a_curve_of_ones_own_moves_the_mouth_and_runs_only_the_quick_stages(session, stages):
+    session.weighting = "user"
+    first = stages.run(session.request())
+    session.curve_weights = curve_through([(0.2, 0.3), (0.6, 0.1)])
     second = stages.run(session.request())
     assert second.ran == BLEND
     assert not np.array_equal(second.trajectory.values_mm, first.trajectory.values_mm)
