@@ -131,6 +131,22 @@ def test_a_click_and_a_key_select_a_fragment(browser_page, served):
     assert chosen.inner_text().startswith("1: ")
 
 
+def test_nothing_changes_while_the_page_is_on_its_way(browser_page, served):
+    """What is done before the browser has the page reaches it, however long the page takes."""
+    url, workbench, _ = served
+    before = set(workbench.pages)
+    held = []
+    browser_page.route("**/*.js*", lambda route: held.append(route) if not held else route.continue_())
+    browser_page.goto(url, wait_until="commit")
+    until(browser_page, lambda: held and set(workbench.pages) - before)
+    (page,) = set(workbench.pages) - before
+    until(browser_page, lambda: not page.desk.busy)
+    assert page.shell.starting
+    held[0].continue_()
+    lane(browser_page).wait_for(timeout=30_000)
+    until(browser_page, lambda: page.session.result is not None)
+
+
 def test_next_sentence_and_presets_by_key(browser_page, served):
     session = drawn(browser_page, served)
     first = session.sentence

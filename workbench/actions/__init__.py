@@ -3,13 +3,14 @@
 from workbench.actions.corpora import CorpusCache, inside_root
 from workbench.actions.desk import Desk
 from workbench.actions.export import export_config, replay_command, suggested_path
-from workbench.actions.jobs import Cancelled, Job, LatestJob
+from workbench.actions.jobs import Cancelled, Gate, Job, LatestJob
 from workbench.actions.picks import ban_unit, heard, options_shown, swap_to, swap_unit, toggle_pin, unban
 
 __all__ = [
     "Cancelled",
     "CorpusCache",
     "Desk",
+    "Gate",
     "Job",
     "LatestJob",
     "ban_unit",

@@ -75,6 +75,11 @@ class Desk:
 
         self._opening.submit(work, cancel_running=True)
 
+    @property
+    def busy(self) -> bool:
+        """Whether anything is opened, computed or exported."""
+        return any(jobs.busy for jobs in (self._opening, self._results, self._exports))
+
     def cancel(self) -> None:
         """Stop opening, or drop the results that are under way."""
         if self.session.status == "opening":

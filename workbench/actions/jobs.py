@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from corpus_tools.core import WorkbenchError
 
-__all__ = ["Cancelled", "Job", "LatestJob"]
+__all__ = ["Cancelled", "Gate", "Job", "LatestJob"]
 
 T = TypeVar("T")
 Deliver = Callable[[Callable[[], None]], None]
@@ -17,6 +17,39 @@ Deliver = Callable[[Callable[[], None]], None]
 
 class Cancelled(Exception):  # noqa: N818
     """Raised inside a job that nobody waits for any more."""
+
+
+class Gate:
+    """Keeps what is to be done for a page until the browser has the page, then does it in order.
+
+    A change made while the page is on its way would be lost: the browser drops changes that arrive before the
+    page, which may have been written down before they were made.
+
+    Parameters
+    ----------
+    deliver : callable
+        ``deliver(action)`` runs ``action()`` where the page's parameters may be set.
+    """
+
+    def __init__(self, deliver: Deliver) -> None:
+        self._deliver = deliver
+        self._lock = threading.RLock()
+        self._kept: list[Callable[[], None]] | None = []
+
+    def __call__(self, action: Callable[[], None]) -> None:
+        """Deliver an action, now or when the gate opens."""
+        with self._lock:
+            if self._kept is not None:
+                self._kept.append(action)
+                return
+            self._deliver(action)
+
+    def open(self) -> None:
+        """Let everything through from now on; opening it again changes nothing."""
+        with self._lock:
+            kept, self._kept = self._kept or [], None
+            for action in kept:
+                self._deliver(action)
 
 
 class Job:

@@ -9,7 +9,7 @@ from typing import Any
 
 import panel as pn
 
-from workbench.actions import CorpusCache, Desk, ban_unit, heard, suggested_path, swap_unit, toggle_pin
+from workbench.actions import CorpusCache, Desk, Gate, ban_unit, heard, suggested_path, swap_unit, toggle_pin
 from workbench.state import Session
 from workbench.views.bar import AppBar
 from workbench.views.controls import Controls
@@ -40,7 +40,7 @@ class BlendPage:
     export_folder : path
         Where the first suggestion for a config file points.
     deliver : callable
-        Runs an action where this tab's parameters may be set.
+        Runs an action where this tab's parameters may be set; not called before the browser has the page.
     fill : bool
         Fill the window; False in a notebook cell.
     begin : str
@@ -58,7 +58,8 @@ class BlendPage:
     ) -> None:
         self._begin = begin
         self.session = Session()
-        self.desk = Desk(self.session, cache, deliver)
+        self._gate = Gate(deliver)
+        self.desk = Desk(self.session, cache, self._gate)
         self._make_demo = make_demo
         self._picking = False
         clock = f"page-{next(_clocks)}"
@@ -81,6 +82,7 @@ class BlendPage:
         self.shell = Shell(
             on_key=self._key,
             on_rail=self.show,
+            on_ready=self.arrived,
             bar=self.bar.__panel__(),
             transport=self.transport,
             work=self.board.__panel__(),
@@ -110,6 +112,10 @@ class BlendPage:
         watch(self._corpus, "corpus")
         watch(self._opening, "status")
         watch(self._sound, "result")
+
+    def arrived(self) -> None:
+        """Take up what was done while the page was on its way: the browser has it."""
+        self._gate.open()
 
     def show(self, dashboard: str) -> None:
         """Show the corpus page or the blend page; without a corpus, open or on its way, only the first."""

@@ -87,6 +87,7 @@ def check_run(options: Options, timeout_s: float = 180.0) -> CheckReport:
         client = pull_session(session_id=session_id, url=url)
         try:
             page = workbench.pages[-1]
+            page.arrived()
             _wait_for_motion(page, started + timeout_s)
             session = page.session
             assert session.result is not None

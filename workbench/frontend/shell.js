@@ -199,5 +199,6 @@ export function renderShell({ model, el }) {
   };
   document.addEventListener("keydown", onKey);
   model.on("remove", () => document.removeEventListener("keydown", onKey));
+  model.send_msg({ type: "ready" });
   return root;
 }

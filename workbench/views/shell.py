@@ -31,8 +31,9 @@ class Shell(pn.custom.JSComponent):
         What stands in the places, from the beginning: children that come later would be rendered anew with
         all others. `start` is shown instead of `work` and the inspector while `starting`. The inspector
         scrolls, its foot does not.
-    on_key, on_rail : callable, optional
-        ``on_key(action id, which of its keys)`` and ``on_rail(dashboard id)``.
+    on_key, on_rail, on_ready : callable, optional
+        ``on_key(action id, which of its keys)``, ``on_rail(dashboard id)``, and ``on_ready()`` when the
+        browser has the page.
     """
 
     bar = pn.custom.Child()
@@ -63,9 +64,10 @@ class Shell(pn.custom.JSComponent):
         self,
         on_key: Callable[[str, int], None] | None = None,
         on_rail: Callable[[str], None] | None = None,
+        on_ready: Callable[[], None] | None = None,
         **params: Any,
     ) -> None:
-        self._on_key, self._on_rail = on_key, on_rail
+        self._on_key, self._on_rail, self._on_ready = on_key, on_rail, on_ready
         defaults = {
             "sizing_mode": "stretch_both",
             "bindings": bindings("transport", "blend"),
@@ -78,6 +80,8 @@ class Shell(pn.custom.JSComponent):
             self._on_key(str(data["id"]), int(data["index"]))
         if data.get("type") == "rail" and self._on_rail is not None:
             self._on_rail(str(data["id"]))
+        if data.get("type") == "ready" and self._on_ready is not None:
+            self._on_ready()
 
 
 class Board(pn.custom.JSComponent):

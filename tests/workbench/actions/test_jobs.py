@@ -6,7 +6,7 @@ import threading
 import pytest
 
 from corpus_tools.core import InputError
-from workbench.actions import LatestJob
+from workbench.actions import Gate, LatestJob
 
 
 class Page:
@@ -117,3 +117,16 @@ def test_after_close_nothing_starts(page):
     page.jobs.submit(lambda job: 1)
     assert page.done == []
     assert not page.jobs.busy
+
+
+def test_a_gate_keeps_the_order_and_lets_nothing_through_before_it_opens():
+    done = []
+    gate = Gate(lambda action: action())
+    gate(lambda: done.append(1))
+    gate(lambda: (done.append(2), gate(lambda: done.append(3))))
+    assert done == []
+    gate.open()
+    assert done == [1, 2, 3]
+    gate(lambda: done.append(4))
+    gate.open()
+    assert done == [1, 2, 3, 4]
