@@ -141,7 +141,7 @@ def test_nothing_changes_while_the_page_is_on_its_way(browser_page, served):
     until(browser_page, lambda: held and set(workbench.pages) - before)
     (page,) = set(workbench.pages) - before
     until(browser_page, lambda: not page.desk.busy)
-    assert page.shell.starting
+    assert page.session.corpus is None
     held[0].continue_()
     lane(browser_page).wait_for(timeout=30_000)
     until(browser_page, lambda: page.session.result is not None)
