@@ -3,13 +3,12 @@
 from corpus_tools.mesh.attachment import Attachment
 from corpus_tools.mesh.binding import Binding, ControlSurface, LinearBinding, PatchBinding
 from corpus_tools.mesh.bundle import CHARACTERS, bundled_head, bundled_morph_mm, bundled_morphs
-from corpus_tools.mesh.chart import Chart, open_mouth_chart
+from corpus_tools.mesh.chart import CONTROL_POINTS, Chart, open_mouth_chart
 from corpus_tools.mesh.deform import ATTACHMENTS, DEFORMERS, bind_bid, bind_linear, bind_rbf
 from corpus_tools.mesh.falloff import STILL_MARKERS
 from corpus_tools.mesh.files import mesh_by_name_or_file, read_mesh, write_mesh
 from corpus_tools.mesh.jaw import JAW_PARTS, jaw_hinge_mm, jaw_motion
 from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, close_lips, lower_side, signed_lip_aperture_mm
-from corpus_tools.mesh.patches import CONTROL_POINTS
 from corpus_tools.mesh.rbf import DISPLACEMENT_KERNELS, displacement_basis
 from corpus_tools.mesh.regions import SkinRegion, skin_regions
 from corpus_tools.mesh.topology import edge_loop, edges_of, geodesic_mm, triangles, vertex_normals

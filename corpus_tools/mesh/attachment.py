@@ -93,8 +93,9 @@ def nearest_on_patches(
 
     Parameters
     ----------
-    points_mm : (n, 3), mm
-    control_mm : (n_patches, 10, 3), mm
+    points_mm : (n, 3 or more), mm
+        Coordinates beyond the third, of points and control points alike, pull towards a place in the chart.
+    control_mm : (n_patches, 10, 3 or more), mm
     allowed : (n_patches,) bool
     normals : (n, 3), optional
         With them, patches whose normal is turned by more than `angle_deg` against the point's are taken only
@@ -110,7 +111,7 @@ def nearest_on_patches(
         control = control_mm[patches[rows, k]]
         found, cost = _closest(points_mm[rows], control, starts[rows, k])
         if normals is not None:
-            cosine = (frames_at(control, found)[3] * normals[rows]).sum(axis=1)
+            cosine = (frames_at(control[:, :, :3], found)[3] * normals[rows]).sum(axis=1)
             cost = cost + 1e6 * (cosine < np.cos(np.radians(angle_deg)))
         better = cost < best[rows]
         rows = rows[better]
@@ -160,8 +161,9 @@ def _closest(points: FloatArray, control: FloatArray, bary: FloatArray) -> tuple
     best, here = bary, bary
     least = np.full(len(points), np.inf)
     for _ in range(ROUNDS):
-        point, t1, t2, _ = frames_at(control, here)
-        left = points - point
+        first, second = tangent_rows(here)
+        t1, t2 = (np.einsum("nk,nkc->nc", rows, control) for rows in (first, second))
+        left = points - np.einsum("nk,nkc->nc", bernstein(here), control)
         distance = np.linalg.norm(left, axis=1)
         better = distance < least
         least = np.where(better, distance, least)

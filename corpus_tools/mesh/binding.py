@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, vstack
 
 from corpus_tools.core import FloatArray, IntArray, Mesh, MeshError, frozen
 from corpus_tools.mesh.attachment import Attachment, frames_at
-from corpus_tools.mesh.chart import Chart
+from corpus_tools.mesh.chart import CONTROL_POINTS, Chart
 from corpus_tools.mesh.jaw import JAW_PARTS, jaw_motion
-from corpus_tools.mesh.kernel import patch_frames
+from corpus_tools.mesh.kernel import Plan, patch_frames, plan_for
 from corpus_tools.mesh.patches import bernstein, tangent_rows
 
-__all__ = ["Binding", "ControlSurface", "LinearBinding", "PatchBinding"]
+__all__ = ["Binding", "ControlSurface", "LinearBinding", "PatchBinding", "with_followers"]
 
 
 class Binding(abc.ABC):
@@ -151,14 +152,24 @@ class ControlSurface:
     Attributes
     ----------
     chart : Chart
-        Triangles of markers; patches 3 k to 3 k + 2 belong to triangle k.
+        Triangles of markers; patches 3 k to 3 k + 2 belong to triangle k. Patches beyond these carry one
+        vertex each and only shift (:func:`with_followers`).
     net : csr (10 n_patches, n_markers) float64
-        Control points = net @ markers; ten rows a patch, in the order of
-        :data:`corpus_tools.mesh.patches.CONTROL_POINTS`: b300 b030 b003 b210 b201 b120 b021 b102 b012 b111.
+        Shift of control points = net @ shift of markers; ten rows a patch, in the order of
+        :data:`corpus_tools.mesh.chart.CONTROL_POINTS`: b300 b030 b003 b210 b201 b120 b021 b102 b012 b111.
+        A row sums to one where no point that stands still has a share in it.
+    markers_rest_mm : (n_markers, 3) float64, mm
+    control_rest_mm : (n_patches, 10, 3) float64, mm
     """
 
     chart: Chart
     net: csr_array
+    markers_rest_mm: FloatArray
+    control_rest_mm: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "markers_rest_mm", frozen(self.markers_rest_mm))
+        object.__setattr__(self, "control_rest_mm", frozen(self.control_rest_mm))
 
     @property
     def n_patches(self) -> int:
@@ -167,7 +178,47 @@ class ControlSurface:
 
     def control_mm(self, markers_mm: npt.ArrayLike) -> FloatArray:
         """Return the control points (n_patches, 10, 3), mm, for markers (n_markers, 3), mm."""
-        return np.asarray(self.net @ np.asarray(markers_mm, float)).reshape(-1, 10, 3)
+        shift = np.asarray(self.net @ (np.asarray(markers_mm, float) - self.markers_rest_mm))
+        return self.control_rest_mm + shift.reshape(-1, 10, 3)
+
+
+def with_followers(
+    surface: ControlSurface,
+    attachment: Attachment,
+    vertices: IntArray,
+    places_mm: FloatArray,
+    basis: FloatArray,
+) -> tuple[ControlSurface, Attachment]:
+    """Add vertices that move by a fixed blend of marker shifts, each on a small patch that only shifts.
+
+    So the inside of the mouth, which has no markers, is deformed by the same kernel as the skin.
+
+    Parameters
+    ----------
+    surface : ControlSurface
+    attachment : Attachment
+    vertices : (n,) int
+    places_mm : (n, 3), mm
+        At rest.
+    basis : (n, n_markers)
+    """
+    if not len(vertices):
+        return surface, attachment
+    small = np.concatenate([CONTROL_POINTS[:, :2] / 3.0, np.zeros((10, 1))], axis=1)
+    patches = places_mm[:, None, :] + small - small.mean(axis=0)
+    net = vstack([surface.net, csr_array(np.repeat(basis, 10, axis=0))], format="csr")
+    control = np.concatenate([surface.control_rest_mm, patches])
+    n, third = len(vertices), np.full((len(vertices), 3), 1.0 / 3.0)
+    both = np.concatenate([attachment.vertices, vertices])
+    order = np.argsort(both)
+    grown = Attachment(
+        both[order],
+        np.concatenate([attachment.patch, surface.n_patches + np.arange(n)])[order],
+        np.concatenate([attachment.bary, third])[order],
+        np.concatenate([attachment.offset, np.zeros((n, 3))])[order],
+        np.concatenate([attachment.weight, np.ones(n)])[order],
+    )
+    return ControlSurface(surface.chart, csr_array(net), surface.markers_rest_mm, control), grown
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -178,12 +229,15 @@ class PatchBinding(Binding):
     ----------
     surface : ControlSurface
     attachment : Attachment
+    plans : dict
+        What the kernel made of both, by precision.
     """
 
     mesh: Mesh
     names: tuple[str, ...]
     surface: ControlSurface
     attachment: Attachment
+    plans: dict[np.dtype[Any], Plan] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "names", tuple(self.names))
@@ -204,7 +258,7 @@ class PatchBinding(Binding):
         hit = a.vertices[rows] == np.asarray(vertices)
         patch, bary, offset = a.patch[rows], a.bary[rows], a.offset[rows]
         first, second = tangent_rows(bary)
-        _, t1, t2, normal = frames_at(self.surface.control_mm(self.rest_mm)[patch], bary)
+        _, t1, t2, normal = frames_at(self.surface.control_rest_mm[patch], bary)
         turn1, turn2 = _normal_turn(t1, t2, normal, axis=1)
         blend = bernstein(bary) + (offset[:, 0] + offset[:, 2] * turn1)[:, None] * first
         blend = blend + (offset[:, 1] + offset[:, 2] * turn2)[:, None] * second
@@ -216,8 +270,15 @@ class PatchBinding(Binding):
 
     def skin_mm(self, targets_mm: FloatArray, dtype: npt.DTypeLike = np.float32) -> npt.NDArray[np.floating]:
         """Return the driven vertices in every frame, (n_frames, n_driven, 3), mm."""
-        rest = self.mesh.vertices_mm[self.attachment.vertices]
-        return patch_frames(self.surface.net, self.attachment, rest, targets_mm, dtype)
+        return patch_frames(self._plan(np.dtype(dtype)), targets_mm - self.rest_mm)
+
+    def _plan(self, dtype: np.dtype[Any]) -> Plan:
+        if dtype not in self.plans:
+            s, a = self.surface, self.attachment
+            rest = self.mesh.vertices_mm[a.vertices]
+            n_smooth = 3 * len(s.chart.triangles)
+            self.plans[dtype] = plan_for(s.control_rest_mm, s.net, a, rest, n_smooth, dtype)
+        return self.plans[dtype]
 
 
 def _normal_turn(

@@ -7,18 +7,40 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import RBFInterpolator
 from scipy.spatial import Delaunay, QhullError
 
 from corpus_tools.core import BoolArray, FloatArray, IntArray, Mesh, MeshError, frozen
-from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, lower_side
+from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, lower_side, skin_faces
+from corpus_tools.mesh.topology import geodesic_mm
 
-__all__ = ["Chart", "marker_sides", "open_mouth_chart"]
+__all__ = ["CONTROL_POINTS", "Chart", "chart_places", "marker_sides", "open_mouth_chart"]
+
+CONTROL_POINTS = np.array(
+    [
+        [3, 0, 0],
+        [0, 3, 0],
+        [0, 0, 3],
+        [2, 1, 0],
+        [2, 0, 1],
+        [1, 2, 0],
+        [0, 2, 1],
+        [1, 0, 2],
+        [0, 1, 2],
+        [1, 1, 1],
+    ]
+)
+"""Exponents of the ten control points in the order of every net; the third corner is the centroid."""
 
 INNER_RING = tuple(f"lip_in{i}" for i in range(8))
 OUTER_RING = tuple(f"lip_out{i}" for i in range(12))
-OPENING = 0.45
+OPENING = 0.1
 """How far the chart opens the mouth, as a share of its width; our choice."""
 SLIVER_DEG = 5.0
+N_STILL = 20
+STILL_MM = 55.0
+"""Distance along the skin at which points stand still around the markers; our choice."""
+RING = (0.5, 1.15)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,19 +49,23 @@ class Chart:
 
     Attributes
     ----------
-    points_mm : (n_markers, 2) float64
+    vertices : (n_points,) int64
+        Vertex of every point: those of the markers first, then points around the face that stand still.
+    points_mm : (n_points, 2) float64
         Arc length about the head and height, mouth open.
     triangles : (n_triangles, 3) int64
-        Markers, counter-clockwise seen from outside.
-    side : (n_markers,) int8
+        Points, counter-clockwise seen from outside.
+    side : (n_points,) int8
         1 on the upper lip, -1 on the lower, 0 elsewhere (corners of the mouth too).
     """
 
+    vertices: IntArray
     points_mm: FloatArray
     triangles: IntArray
     side: npt.NDArray[np.int8]
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", frozen(self.vertices, np.int64))
         object.__setattr__(self, "points_mm", frozen(self.points_mm))
         object.__setattr__(self, "triangles", frozen(self.triangles, np.int64))
         object.__setattr__(self, "side", frozen(self.side, np.int8))
@@ -49,6 +75,32 @@ class Chart:
         """1 for triangles with a corner on the upper lip, -1 on the lower, 0 for all others."""
         corners = self.side[self.triangles]
         return np.asarray(corners.max(axis=1) + corners.min(axis=1), np.int8)
+
+    def patch_points(self) -> FloatArray:
+        """Return where in the chart the control points of the patches lie, (3 n_triangles, 10, 2), mm."""
+        corners = self.points_mm[self.triangles]
+        centre = corners.mean(axis=1)
+        patches = np.stack([corners, np.roll(corners, -1, axis=1), np.stack([centre] * 3, axis=1)], axis=2)
+        return np.asarray(CONTROL_POINTS / 3.0 @ patches.reshape(-1, 3, 2))
+
+
+def chart_places(chart: Chart, vertices_mm: FloatArray, points_mm: FloatArray, side: int = 0) -> FloatArray:
+    """Return about where in the chart points of the skin lie, (n, 2), mm: a smooth map through its points.
+
+    Parameters
+    ----------
+    chart : Chart
+    vertices_mm : (n_vertices, 3), mm
+        The mesh at rest.
+    points_mm : (n, 3), mm
+    side : int
+        1 for points of the upper lip's side, -1 for the lower's, whose map leaves out the other lip.
+    """
+    use = chart.side * side >= 0
+    known = vertices_mm[chart.vertices[use]]
+    scale = float(np.ptp(known, axis=0).max())
+    warp = RBFInterpolator(known / scale, chart.points_mm[use], kernel="linear", degree=1)
+    return np.asarray(warp(points_mm / scale))
 
 
 def marker_sides(names: Sequence[str]) -> npt.NDArray[np.int8]:
@@ -75,8 +127,12 @@ def open_mouth_chart(mesh: Mesh, names: Sequence[str]) -> Chart:
         The markers lie on a line or are too few.
     """
     at = np.array([mesh.markers[n] for n in names], np.int64)
-    side = marker_sides(names)
-    points = _unrolled(_opened(mesh, at, names))
+    opened = _opened(mesh, at, names)
+    points = _with_inner_corners(_unrolled(opened), mesh.vertices_mm[at], names)
+    still, around = _still_points(mesh, at, points)
+    at, points = np.concatenate([at, still]), np.concatenate([points, around])
+    side = np.zeros(len(at), np.int8)
+    side[: len(names)] = marker_sides(names)
     try:
         triangles = np.asarray(Delaunay(points).simplices, np.int64)
     except (QhullError, ValueError) as error:
@@ -86,7 +142,7 @@ def open_mouth_chart(mesh: Mesh, names: Sequence[str]) -> Chart:
     triangles = _counter_clockwise(points, triangles)
     both = (side[triangles] > 0).any(axis=1) & (side[triangles] < 0).any(axis=1)
     triangles = triangles[~(both | _in_the_mouth(points, triangles, names))]
-    return Chart(points, _without_slivers(points, triangles), side)
+    return Chart(at, points, _without_slivers(points, triangles), side)
 
 
 def _opened(mesh: Mesh, at: IntArray, names: Sequence[str]) -> FloatArray:
@@ -102,12 +158,50 @@ def _opened(mesh: Mesh, at: IntArray, names: Sequence[str]) -> FloatArray:
 
 def _unrolled(points: FloatArray) -> FloatArray:
     """Return arc length about a vertical axis behind the face, and height."""
-    width, depth = np.ptp(points[:, 0]), np.ptp(points[:, 2])
-    x = 0.5 * (points[:, 0].min() + points[:, 0].max())
-    z = points[:, 2].min() - max(0.25 * float(width) - 0.5 * float(depth), 0.1 * float(width), 1e-6)
+    width, depth = float(np.ptp(points[:, 0])), float(np.ptp(points[:, 2]))
+    x = 0.5 * float(points[:, 0].min() + points[:, 0].max())
+    z = float(points[:, 2].min()) - max(0.25 * width - 0.5 * depth, 0.1 * width, 1e-6)
     radius = float(np.median(np.hypot(points[:, 0] - x, points[:, 2] - z)))
     angle = np.arctan2(points[:, 0] - x, points[:, 2] - z)
     return np.stack([radius * angle, points[:, 1]], axis=1)
+
+
+def _with_inner_corners(points: FloatArray, rest: FloatArray, names: Sequence[str]) -> FloatArray:
+    """Put the inner corner of each side of the mouth beside the outer one, towards the middle.
+
+    The two nearly coincide, and the inner one lies deeper: unrolled, it could come to lie outside.
+    """
+    place = {n: i for i, n in enumerate(names)}
+    out = points.copy()
+    for inner, outer, other in (("lip_in0", "lip_out0", "lip_out6"), ("lip_in4", "lip_out6", "lip_out0")):
+        if all(n in place for n in (inner, outer, other)):
+            i, o = place[inner], place[outer]
+            inward = points[place[other]] - points[o]
+            apart = float(np.linalg.norm(rest[i] - rest[o]))
+            out[i] = points[o] + inward * min(apart / max(float(np.linalg.norm(inward)), 1e-9), 0.2)
+    return out
+
+
+def _still_points(mesh: Mesh, at: IntArray, points: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return vertices on a ring around the markers where nothing moves, and their places in the chart."""
+    far = STILL_MM
+    distance = geodesic_mm(mesh.vertices_mm, mesh.faces[skin_faces(mesh)], at)
+    rim = np.flatnonzero((distance > RING[0] * far) & (distance < RING[1] * far))
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    towards = mesh.vertices_mm[rim, :2] - 0.5 * (
+        mesh.vertices_mm[at, :2].min(axis=0) + mesh.vertices_mm[at, :2].max(axis=0)
+    )
+    bearing = np.arctan2(towards[:, 1], towards[:, 0])
+    vertices, places = [], []
+    for angle in np.linspace(-np.pi, np.pi, N_STILL, endpoint=False):
+        direction = np.array([np.cos(angle), np.sin(angle)])
+        off = np.abs((bearing - angle + np.pi) % (2 * np.pi) - np.pi)
+        near = np.flatnonzero(off < np.pi / N_STILL)
+        if len(near):
+            pick = near[np.abs(distance[rim[near]] - far).argmin()]
+            vertices.append(int(rim[pick]))
+            places.append(centre + (((points - centre) @ direction).max() + distance[rim[pick]]) * direction)
+    return np.array(vertices, np.int64), np.array(places).reshape(-1, 2)
 
 
 def _counter_clockwise(points: FloatArray, triangles: IntArray) -> IntArray:
@@ -124,7 +218,8 @@ def _in_the_mouth(points: FloatArray, triangles: IntArray, names: Sequence[str])
     ring = next((r for r in (INNER_RING, OUTER_RING) if all(n in place for n in r)), ())
     if not ring:
         return np.zeros(len(triangles), bool)
-    lips = np.array([n in (*INNER_RING, *OUTER_RING) for n in names])
+    lips = np.zeros(len(points), bool)
+    lips[: len(names)] = [n in (*INNER_RING, *OUTER_RING) for n in names]
     centres = points[triangles].mean(axis=1)
     return _inside(centres, points[[place[n] for n in ring]]) & lips[triangles].all(axis=1)
 

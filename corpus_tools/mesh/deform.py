@@ -8,10 +8,11 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from corpus_tools.core import BoolArray, FloatArray, IntArray, Mesh, MeshError, Registry
-from corpus_tools.mesh.attachment import Attachment, attach, frames_at, nearest_on_patches
-from corpus_tools.mesh.binding import Binding, ControlSurface, LinearBinding, PatchBinding
-from corpus_tools.mesh.chart import Chart, open_mouth_chart
-from corpus_tools.mesh.falloff import STILL_MARKERS, marker_fade, smooth_step
+from corpus_tools.mesh.attachment import Attachment, attach, nearest_on_patches
+from corpus_tools.mesh.binding import Binding, ControlSurface, LinearBinding, PatchBinding, with_followers
+from corpus_tools.mesh.chart import Chart, chart_places, open_mouth_chart
+from corpus_tools.mesh.falloff import STILL_MARKERS, marker_fade
+from corpus_tools.mesh.kernel import warm_up
 from corpus_tools.mesh.lips import lip_distances_mm
 from corpus_tools.mesh.patches import linear_net, smooth_net
 from corpus_tools.mesh.rbf import displacement_basis
@@ -22,8 +23,8 @@ __all__ = ["ATTACHMENTS", "DEFORMERS", "bind_bid", "bind_linear", "bind_rbf"]
 
 ATTACHMENTS = ("side", "angle")
 ANGLE_DEG = 60.0
-WALL = (0.24, 0.8)
-"""Depth behind the skin, in widths of the mouth, at which its inside begins to lag and no longer moves."""
+GUIDE = 0.5
+"""How much a mm in the chart counts against one in space when a vertex looks for its patch; our choice."""
 
 DEFORMERS: Registry[Callable[[Mesh, Sequence[str]], Binding]] = Registry("deformer")
 
@@ -49,6 +50,7 @@ def bind_bid(
     MeshError
         A marker has no vertex on the mesh, two share one, or they span no surface.
     """
+    warm_up()
     chart = _chart(mesh, names)
     return _bind_patches(mesh, names, chart, smooth_net(chart), attachment, angle_deg)
 
@@ -62,6 +64,7 @@ def bind_linear(mesh: Mesh, names: Sequence[str]) -> PatchBinding:
     MeshError
         A marker has no vertex on the mesh, two share one, or they span no surface.
     """
+    warm_up()
     chart = _chart(mesh, names)
     return _bind_patches(mesh, names, chart, linear_net(chart), "side", ANGLE_DEG)
 
@@ -99,39 +102,45 @@ def _chart(mesh: Mesh, names: Sequence[str]) -> Chart:
 def _bind_patches(
     mesh: Mesh, names: Sequence[str], chart: Chart, net: csr_array, rule: str, angle_deg: float
 ) -> PatchBinding:
-    """Attach every vertex of the skin that the markers reach."""
+    """Attach every vertex of the skin that the markers reach; the inside of the mouth follows on its own."""
     at = np.array([mesh.markers[n] for n in names], np.int64)
-    surface = ControlSurface(chart, net)
-    control = surface.control_mm(mesh.vertices_mm[at])
-    weight = marker_fade(mesh, at[[n not in STILL_MARKERS for n in names]])
+    moving = np.array([n not in STILL_MARKERS for n in names])
+    control = np.asarray(net @ mesh.vertices_mm[chart.vertices]).reshape(-1, 10, 3)
+    weight = marker_fade(mesh, at[moving])
     if "skin" in mesh.part_names:
         weight[~mesh.part_mask("skin")] = 0.0
     inside = skin_regions(mesh) == SkinRegion.MOUTH
-    vertices = np.flatnonzero((weight > 0) | inside)
+    vertices = np.flatnonzero((weight > 0) & ~inside)
     if rule == "angle":
         patch, bary = _by_angle(mesh, vertices, control, angle_deg)
     else:
         patch, bary = _by_side(mesh, vertices, control, chart)
+    _pin_markers(chart, vertices, patch, bary)
     offset = attach(mesh.vertices_mm[vertices], control, patch, bary)
-    share = weight[vertices]
-    walls = inside[vertices]
-    point = frames_at(control[patch], bary)[0]
-    depth = np.linalg.norm(mesh.vertices_mm[vertices] - point, axis=1)
-    share[walls] = _wall_share(mesh, depth[walls])
-    moves = share > 0
-    return PatchBinding(
-        mesh,
-        tuple(names),
-        surface,
-        Attachment(vertices[moves], patch[moves], bary[moves], offset[moves], share[moves]),
-    )
+    outside = Attachment(vertices, patch, bary, offset, weight[vertices])
+    free = csr_array(net[:, : len(names)].multiply(moving))
+    free.eliminate_zeros()
+    surface = ControlSurface(chart, free, mesh.vertices_mm[at], control)
+    return PatchBinding(mesh, tuple(names), *with_followers(surface, outside, *_walls(mesh, names, inside)))
 
 
-def _wall_share(mesh: Mesh, depth_mm: FloatArray) -> FloatArray:
-    """Return the share of the motion that the inside of the mouth takes part in, by depth behind the skin."""
-    width = float(np.ptp(mesh.vertices_mm[mesh.lip_pairs.ravel(), 0]))
-    near, far = (share * width for share in WALL)
-    return smooth_step((far - depth_mm) / (far - near))
+def _pin_markers(chart: Chart, vertices: IntArray, patch: IntArray, bary: FloatArray) -> None:
+    """Put the vertex of every point of the chart at its own corner, in place."""
+    for point, vertex in enumerate(chart.vertices):
+        row = int(np.searchsorted(vertices, vertex))
+        corner = np.argwhere(chart.triangles == point)
+        if row < len(vertices) and vertices[row] == vertex and len(corner):
+            patch[row] = 3 * corner[0, 0] + corner[0, 1]
+            bary[row] = (1.0, 0.0, 0.0)
+
+
+def _walls(mesh: Mesh, names: Sequence[str], inside: BoolArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return vertices inside the mouth that move, their places, and their blends of marker shifts."""
+    if not inside.any():
+        return np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, len(names)))
+    basis = displacement_basis(mesh, names)
+    walls = np.flatnonzero(inside & np.any(basis, axis=1))
+    return walls, mesh.vertices_mm[walls], basis[walls]
 
 
 def _by_angle(
@@ -147,14 +156,17 @@ def _by_angle(
 def _by_side(
     mesh: Mesh, vertices: IntArray, control: FloatArray, chart: Chart
 ) -> tuple[IntArray, FloatArray]:
-    """Return the nearest places on patches that do not belong to the other lip."""
+    """Return the nearest places on patches that do not belong to the other lip, guided by the chart."""
     to_upper, to_lower = (d[vertices] for d in lip_distances_mm(mesh))
     label = np.sign(np.nan_to_num(to_lower - to_upper, posinf=0.0, neginf=0.0))
     side = np.repeat(chart.triangle_side, 3)
+    guided = np.concatenate([control, GUIDE * chart.patch_points()], axis=2)
     patch, bary = np.zeros(len(vertices), np.int64), np.zeros((len(vertices), 3))
     for wanted in (-1, 0, 1):
         rows = np.flatnonzero(label == wanted)
         if len(rows):
-            allowed = side * wanted >= 0
-            patch[rows], bary[rows] = nearest_on_patches(mesh.vertices_mm[vertices[rows]], control, allowed)
+            points = mesh.vertices_mm[vertices[rows]]
+            places = chart_places(chart, mesh.vertices_mm, points, int(wanted))
+            points = np.concatenate([points, GUIDE * places], axis=1)
+            patch[rows], bary[rows] = nearest_on_patches(points, guided, side * wanted >= 0)
     return patch, bary

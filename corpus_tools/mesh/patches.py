@@ -13,28 +13,12 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 
 from corpus_tools.core import BoolArray, FloatArray, IntArray
-from corpus_tools.mesh.chart import Chart
+from corpus_tools.mesh.chart import CONTROL_POINTS, Chart
 
-__all__ = ["CONTROL_POINTS", "bernstein", "gradients", "linear_net", "smooth_net", "tangent_rows"]
+__all__ = ["bernstein", "gradients", "linear_net", "smooth_net", "tangent_rows"]
 
-CONTROL_POINTS = np.array(
-    [
-        [3, 0, 0],
-        [0, 3, 0],
-        [0, 0, 3],
-        [2, 1, 0],
-        [2, 0, 1],
-        [1, 2, 0],
-        [0, 2, 1],
-        [1, 0, 2],
-        [0, 1, 2],
-        [1, 1, 1],
-    ]
-)
-"""Exponents of the ten control points in the order of every net; the third corner is the centroid."""
-
-ENOUGH_FOR_CURVATURE = 6
-BLUR = 0.4
+ENOUGH_FOR_CURVATURE = 8
+BLUR = 0.5
 """Share of the usual distance to a neighbour below which a neighbour counts no more than one at it."""
 FACTORIAL = np.array([1.0, 1.0, 2.0, 6.0])
 
@@ -66,7 +50,7 @@ def gradients(chart: Chart) -> FloatArray:
     """Return d/ds and d/dt at every marker as linear functions of the markers, (2, n_markers, n_markers).
 
     Weighted least squares through the marker itself over its neighbours in the triangulation (and theirs,
-    where a marker has few); with curvature where there are at least six. A marker of one lip never looks at
+    where a marker has few); with curvature where there are at least eight. A marker of one lip never looks at
     the other.
     """
     n = len(chart.points_mm)

@@ -26,7 +26,14 @@ def edges_of(faces: npt.ArrayLike) -> IntArray:
     """Return the undirected edges of polygons (n, k), each once: (n_edges, 2), lower index first."""
     f = np.asarray(faces, np.int64)
     pairs = np.stack([f, np.roll(f, -1, axis=1)], axis=2).reshape(-1, 2)
-    return np.unique(np.sort(pairs, axis=1), axis=0)
+    return _distinct(np.sort(pairs, axis=1))
+
+
+def _distinct(edges: npt.NDArray[np.integer]) -> IntArray:
+    """Return each row of (n, 2) once, in order; one number a row sorts many times quicker than two."""
+    n = int(edges.max()) + 1 if edges.size else 1
+    key = np.unique(edges[:, 0].astype(np.int64) * n + edges[:, 1])
+    return np.stack([key // n, key % n], axis=1)
 
 
 def vertex_normals(vertices_mm: npt.ArrayLike, faces: npt.ArrayLike) -> FloatArray:
@@ -64,7 +71,7 @@ def _edge_graph(v: FloatArray, faces: npt.NDArray[np.int32]) -> csr_array:
     key = np.sort(pairs, axis=1)[order]
     same = np.flatnonzero((key[1:] == key[:-1]).all(axis=1))
     flipped = np.stack([across[order[same]], across[order[same + 1]]], axis=1)
-    edges = np.unique(np.sort(np.concatenate([key, flipped]), axis=1), axis=0)
+    edges = _distinct(np.sort(np.concatenate([key, flipped]), axis=1))
     length = np.linalg.norm(v[edges[:, 0]] - v[edges[:, 1]], axis=1)
     return coo_array((length, (edges[:, 0], edges[:, 1])), shape=(len(v), len(v))).tocsr()
 
