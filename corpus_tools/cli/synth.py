@@ -1,4 +1,4 @@
-"""``corpus-tools synth``: one utterance, from labels to a moving head."""
+"""``corpus-tools synth``: one utterance, from text, labels or a recording to a moving head."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import Annotated, Any
 import typer
 
 from corpus_tools.cli.common import emit_json, progress_bar, say
+from corpus_tools.cli.targets import SpeakRequest
 from corpus_tools.config import Config, ConfigBase, config_with, load_config
-from corpus_tools.core import InputError, NoUnitError, OutputError, SynthesisError, Utterance, check_writable
-from corpus_tools.io import find_recordings, read_audio, read_description, read_labels
+from corpus_tools.core import NoUnitError, OutputError, SynthesisError, Utterance, check_writable
+from corpus_tools.io import find_recordings, read_description
 from corpus_tools.mesh import mesh_by_name_or_file
 from corpus_tools.methods import METHODS
 from corpus_tools.pipeline import (
@@ -20,57 +21,21 @@ from corpus_tools.pipeline import (
     corpus_provenance,
     open_corpus,
     prepare_head,
+    speech_facts,
     synthesise,
     write_synthesis,
 )
-from corpus_tools.speech import labelled_utterance
+from corpus_tools.synthesis import StandIn, stand_ins
 
 __all__ = ["register"]
 
 
-def _config(
-    path: Path | None, method: str | None, mesh: str | None, fps: float | None, seed: int | None
-) -> ConfigBase:
+def _config(path: Path | None, changes: dict[str, Any]) -> ConfigBase:
+    """Return the config of the command line: that of the file, with the options that were given."""
     config = load_config(path) if path else Config()
-    changes: dict[str, Any] = {
-        "selection__method": method,
-        "deform__mesh": mesh,
-        "alignment__rate_hz": fps,
-        "output__seed": seed,
-    }
     config = config_with(config, **{k: v for k, v in changes.items() if v is not None})
     METHODS[config.selection.method]
     return config
-
-
-def _target(
-    corpus: OpenCorpus, utterance: str | None, labels: Path | None, audio: Path | None
-) -> tuple[Utterance, dict[str, Any]]:
-    if utterance is not None:
-        return corpus.utterance(utterance), {"utterance": utterance}
-    assert labels is not None
-    sound = read_audio(audio) if audio else None
-    target = labelled_utterance(
-        labels.stem,
-        read_labels(labels),
-        sound,
-        corpus.phones,
-        phone_tier=corpus.description.phone_tier,
-        word_tier=corpus.description.word_tier,
-        source=str(labels),
-    )
-    return target, {"labels": labels.name, "audio": audio.name if audio else None}
-
-
-def _check_request(utterance: str | None, labels: Path | None, audio: Path | None) -> None:
-    if (utterance is None) == (labels is None):
-        raise InputError(
-            "Say what to speak: either --utterance NAME or --labels FILE.TextGrid (one of them)."
-        )
-    if audio is not None and labels is None:
-        raise InputError(
-            "--audio goes with --labels FILE.TextGrid; a recorded utterance brings its own sound."
-        )
 
 
 def _check_out(out: Path, corpus: Path) -> None:
@@ -103,22 +68,51 @@ def _synthesise(
         raise SynthesisError(f"{str(error).rstrip('.')}; {_left_out(opened)}") from error
 
 
+def _as_row(stand_in: StandIn) -> dict[str, Any]:
+    return {
+        "diphone": "-".join(stand_in.diphone),
+        "stood_in": "-".join(stand_in.used),
+        "time_s": round(stand_in.time_s, 4),
+        "unit": stand_in.source,
+    }
+
+
 def _summary(synthesis: Synthesis, opened: OpenCorpus, out: Path) -> dict[str, Any]:
+    missing = stand_ins(synthesis.selection, synthesis.utterance)
     return {
         "out": str(out),
         "utterance": synthesis.utterance.name,
+        "speech": speech_facts(synthesis.utterance),
         "frames": len(synthesis.trajectory.times_s),
         "fragments": [c.unit.key for c in synthesis.selection.chosen],
         "joins": synthesis.selection.n_joins,
         "cost": synthesis.selection.total_cost,
+        "missing_diphones": [_as_row(m) for m in missing],
         "timings_ms": {k: round(v, 2) for k, v in synthesis.timings_ms.items()},
         "left_out": opened.skipped,
     }
 
 
+def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus) -> None:
+    """Print for people what came out, and what they would not see at once."""
+    fragments = summary["fragments"]
+    say(
+        f"{summary['utterance']}: {summary['frames']} frames from {len(fragments)} fragments "
+        f"({', '.join(fragments)}) in {summary['out']}"
+    )
+    missing = stand_ins(synthesis.selection, synthesis.utterance)
+    for sentence in dict.fromkeys(m.sentence for m in missing):
+        say(f"▲ {sentence}")
+    if summary["speech"]["silent"]:
+        say("▲ There is no sound: speech.wav is silence; --audio FILE.wav gives the sound of the labels.")
+    if opened.skipped:
+        say(_left_out(opened))
+
+
 def synth(
     corpus: Annotated[Path, typer.Argument(help="Corpus folder, as 'corpus-tools init' made it.")],
     out: Annotated[Path, typer.Option("--out", help="Folder for motion.npz, mesh.npz, speech.wav, ...")],
+    text: Annotated[str | None, typer.Option("--text", help="Speak this text.")] = None,
     utterance: Annotated[
         str | None, typer.Option("--utterance", help="Speak this recording's sentence.")
     ] = None,
@@ -126,6 +120,16 @@ def synth(
         Path | None, typer.Option("--labels", help="Speak the timed phones of a TextGrid.")
     ] = None,
     audio: Annotated[Path | None, typer.Option("--audio", help="Sound that goes with --labels.")] = None,
+    lang: Annotated[
+        str | None, typer.Option("--lang", help="Language of --text: en, en-gb, ...; the corpus's own.")
+    ] = None,
+    engine: Annotated[
+        str | None, typer.Option("--engine", help="Who speaks --text: espeak, the embedded voice.")
+    ] = None,
+    voice: Annotated[str | None, typer.Option("--voice", help="Variant of the voice, such as f2.")] = None,
+    rate: Annotated[
+        float | None, typer.Option("--rate", help="Speaking rate: 1 as usual, 2 twice as fast.")
+    ] = None,
     method: Annotated[str | None, typer.Option("--method", help="greedy or viterbi.")] = None,
     config: Annotated[
         Path | None, typer.Option("--config", help="A config exported from the workbench.")
@@ -140,17 +144,33 @@ def synth(
     ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")] = False,
 ) -> None:
-    """Synthesise one utterance; its own recording is kept out of the inventory unless --include-self.
+    """Synthesise one utterance: a text, a recording of the corpus (its own units are kept out), or labels.
+
+    Example: corpus-tools synth WORK --text "place blue by f two now" --out OUT
 
     Example: corpus-tools synth WORK --utterance bbaf2n --method viterbi --out OUT
     """
-    _check_request(utterance, labels, audio)
-    settings = _config(config, method, mesh, fps, seed)
+    spoken = {"--lang": lang, "--engine": engine, "--voice": voice, "--rate": rate}
+    asked = SpeakRequest(text, utterance, labels, audio, tuple(k for k, v in spoken.items() if v is not None))
+    settings = _config(
+        config,
+        {
+            "speech__language": lang,
+            "speech__engine": engine,
+            "speech__voice": voice,
+            "speech__rate": rate,
+            "selection__method": method,
+            "deform__mesh": mesh,
+            "alignment__rate_hz": fps,
+            "output__seed": seed,
+        },
+    )
+    asked.check(settings)
     _check_out(out, corpus)
     head_mesh = mesh_by_name_or_file(settings.deform.mesh)
     with progress_bar("opening the corpus") as progress:
         opened = open_corpus(corpus, settings, lambda f, w: progress(0.8 * f, w))
-        target, request = _target(opened, utterance, labels, audio)
+        target, request = asked.target(opened, settings)
         exclude = () if include_self or utterance is None else (utterance,)
         progress(0.82, "binding the head")
         head = prepare_head(opened, head_mesh, settings)
@@ -160,12 +180,7 @@ def synth(
         request["held_out"] = list(exclude)
         write_synthesis(out, synthesis, head, settings, corpus_provenance(opened), request)
     summary = _summary(synthesis, opened, out)
-    say(
-        f"{target.name}: {summary['frames']} frames from {len(summary['fragments'])} fragments "
-        f"({', '.join(summary['fragments'])}) in {out}"
-    )
-    if opened.skipped:
-        say(_left_out(opened))
+    _tell(summary, synthesis, opened)
     if json_:
         emit_json(summary)
 

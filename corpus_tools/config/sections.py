@@ -23,9 +23,11 @@ __all__ = [
     "DeformSettings",
     "OutputSettings",
     "OverrideSettings",
+    "RestSettings",
     "RetargetSettings",
     "Section",
     "SelectionSettings",
+    "SpeechSettings",
     "section",
 ]
 
@@ -49,6 +51,18 @@ def section(name: str) -> Callable[[S], S]:
         return cls
 
     return enter
+
+
+@section("speech")
+class SpeechSettings(Section):
+    """How text is spoken; recordings and label files bring their own sound and times."""
+
+    engine: str = Field("espeak", description="Speech engine by name: espeak, the embedded voice.")
+    language: str = Field(
+        "", description="Such as en, en-gb, en-us; empty: the language that corpus.toml names."
+    )
+    voice: str = Field("", description="Variant of the voice, such as f2; empty: its usual one.")
+    rate: float = Field(1.0, ge=0.5, le=2.5, description="Speaking rate: 1 as usual, 2 twice as fast.")
 
 
 @section("cleaning")
@@ -139,6 +153,18 @@ class ClosureSettings(Section):
     project: bool = Field(True, description="Close the lips where a bilabial stayed open.")
     components: int = Field(16, ge=1, le=60, description="Principal components that carry the correction.")
     iterations: int = Field(3, ge=1, le=20, description="Rounds of the projection.")
+
+
+@section("rest")
+class RestSettings(Section):
+    """The way from the neutral pose into speech and back; our own step, beyond paper A."""
+
+    ease_s: float = Field(
+        0.3,
+        ge=0,
+        le=2,
+        description="Longest way from and to the neutral pose, inside the silence, s; 0: none.",
+    )
 
 
 @section("retarget")

@@ -7,6 +7,13 @@ from corpus_tools.pipeline.opened import OpenCorpus, Progress, open_corpus
 from corpus_tools.pipeline.outputs import write_motion, write_synthesis
 from corpus_tools.pipeline.overrides import ban_of, overrides_of, parse_pin, pin_text
 from corpus_tools.pipeline.provenance import code_hash, corpus_provenance, library_versions
+from corpus_tools.pipeline.speaking import (
+    check_speech,
+    corpus_vocabulary,
+    speak_for,
+    speech_facts,
+    speech_language,
+)
 from corpus_tools.pipeline.stages import Synthesis, align_units, blend_units, select_units, synthesise
 
 __all__ = [
@@ -21,8 +28,10 @@ __all__ = [
     "ban_of",
     "blend_units",
     "check_corpus",
+    "check_speech",
     "code_hash",
     "corpus_provenance",
+    "corpus_vocabulary",
     "health_lines",
     "library_versions",
     "open_corpus",
@@ -31,6 +40,9 @@ __all__ = [
     "pin_text",
     "prepare_head",
     "select_units",
+    "speak_for",
+    "speech_facts",
+    "speech_language",
     "synthesise",
     "vertex_frames",
     "write_motion",

@@ -19,6 +19,7 @@ from corpus_tools.core import Audio, Join, Labels, Selection, Tier, Trajectory, 
 from corpus_tools.io import file_hash, write_textgrid, write_wav
 from corpus_tools.pipeline.head import Head
 from corpus_tools.pipeline.provenance import code_hash, library_versions
+from corpus_tools.pipeline.speaking import speech_facts
 from corpus_tools.pipeline.stages import Synthesis
 
 __all__ = ["JOIN_COLUMNS", "write_motion", "write_synthesis"]
@@ -163,6 +164,7 @@ def write_synthesis(
             "libraries": library_versions(),
             "corpus": provenance,
             "request": request,
+            "speech": speech_facts(utterance),
             "config": config.values(),
             "selection": _selection_rows(synthesis.selection, utterance),
             "selection_cost": synthesis.selection.total_cost,

@@ -19,7 +19,7 @@ from corpus_tools.pipeline.opened import OpenCorpus
 from corpus_tools.pipeline.overrides import overrides_of
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.pipeline.usable import LEAST_RATE_HZ
-from corpus_tools.synthesis import AlignedPieces, align_fragments, blend_pieces
+from corpus_tools.synthesis import AlignedPieces, align_fragments, blend_pieces, rest_at_ends
 
 __all__ = ["Synthesis", "align_units", "blend_units", "select_units", "synthesise"]
 
@@ -131,11 +131,17 @@ def align_units(
 def blend_units(
     corpus: OpenCorpus, utterance: Utterance, pieces: AlignedPieces, config: ConfigBase
 ) -> Trajectory:
-    """Blend aligned fragments and close the lips: the quick part that a slider of g(u) calls."""
+    """Blend aligned fragments, close the lips, rest at the ends: the quick part that a slider calls."""
     blended = blend_pieces(pieces, **config.blend.model_dump(), natural=corpus.natural)
-    if not config.closure.project:
-        return blended
-    return close_bilabials(corpus.lips, blended, utterance, corpus.phones, config.closure.iterations)
+    if config.closure.project:
+        blended = close_bilabials(corpus.lips, blended, utterance, corpus.phones, config.closure.iterations)
+    return rest_at_ends(
+        blended,
+        utterance.phones.intervals,
+        neutral_mm=corpus.neutral_mm,
+        silence=corpus.phones.silence,
+        ease_s=config.rest.ease_s,
+    )
 
 
 def _check_size(utterance: Utterance, rate_hz: float, head: Head) -> None:

@@ -19,11 +19,12 @@ _WORD = r"(?:[^\W\d_][\u0300-\u036f]*)+"
 _TOKEN = re.compile(
     rf"""
     (?P<time>\d{{1,2}}:[0-5]\d(?!\d)(?:\s*[ap]\.?m\b\.?)?|\d{{1,2}}(?:\.[0-5]\d)?\s*[ap]\.?m\b\.?)
-  | (?P<money>[$£€]\s?\d[\d,]*(?:\.\d+)?)
+  | (?P<money>[$£€]\s?\d+(?:,\d{{3}})*(?:\.\d+)?)
   | (?P<ordinal>\d+(?:st|nd|rd|th)\b)
   | (?P<number>(?:(?<![\w.])-)?(?:\d{{1,3}}(?:,\d{{3}})+(?!\d)|\d+)(?:\.\d+)?)
   | (?P<range>(?<=\d)-(?=\d))
   | (?P<dotted>(?:[^\W\d_]\.){{2,}})
+  | (?P<fraction>[½¼¾])
   | (?P<word>{_WORD}(?:['-]{_WORD})*)
   | (?P<pause>[.,;:!?])
   | (?P<nothing>[-/'])
@@ -97,12 +98,13 @@ _READ = {
     "range": _range,
     "dotted": _dotted,
     "symbol": _symbol,
+    "fraction": _symbol,
 }
 
 
 def _check_script(word: str) -> None:
     for sign in word:
-        if sign.isalpha() and not unicodedata.name(sign, "").startswith("LATIN"):
+        if sign.isalnum() and not unicodedata.name(sign, "").startswith(("LATIN ", "MODIFIER ")):
             raise InputError(
                 f"The letter '{sign}' (U+{ord(sign):04X}) in '{word}' is not one that English is written in; "
                 "write it in Latin letters, or name the language with --lang."

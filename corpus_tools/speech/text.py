@@ -46,6 +46,12 @@ class SpokenWord:
     letter: bool = False
 
 
+def _no_word(text: str) -> str:
+    shown = " ".join(text.split())[:40]
+    what = f"'{shown}' holds no word" if shown else "is empty"
+    return f"The text {what}; write what is to be spoken."
+
+
 def check_text(text: str) -> None:
     """Refuse text that cannot be spoken, whatever the language.
 
@@ -65,13 +71,13 @@ def check_text(text: str) -> None:
         if category[0] != "C" or sign in "\t\n\r" or ord(sign) in _DROPPED:
             continue
         what = "a byte that is no UTF-8" if category == "Cs" else "the control character"
-        before = f" (after '{text[max(0, place - 20) : place]}')" if place else ""
+        shown = " ".join(text[max(0, place - 20) : place].split())
+        before = f" (after '{shown}')" if shown else ""
         raise InputError(
             f"Character {place + 1} of the text{before} is {what} U+{ord(sign):04X}; take it out."
         )
     if not any(sign.isalnum() for sign in text):
-        shown = f"'{text.strip()[:40]}' holds no word" if text.strip() else "is empty"
-        raise InputError(f"The text {shown}; write what is to be spoken.")
+        raise InputError(_no_word(text))
 
 
 def _plain_words(text: str) -> list[tuple[str, bool]]:
@@ -119,5 +125,5 @@ def normalise_text(
     pieces = english_words(plain, language, vocabulary) if family == "en" else _plain_words(plain)
     words = _with_pauses(pieces)
     if not words:
-        raise InputError(f"The text '{text.strip()[:40]}' holds no word; write what is to be spoken.")
+        raise InputError(_no_word(text))
     return tuple(words)

@@ -18,6 +18,8 @@ from corpus_tools.synthesis.model import PhoneClasses, SelectionModel, prepare_s
 from corpus_tools.synthesis.overlap import overlap_lengths
 from corpus_tools.synthesis.pieces import AlignedPieces, Piece, align_fragments
 from corpus_tools.synthesis.resampling import TimeRbf, fit_time_rbf, fit_uniform_rbf, resample_uniform
+from corpus_tools.synthesis.rest import rest_at_ends
+from corpus_tools.synthesis.stand_ins import StandIn, stand_ins
 from corpus_tools.synthesis.usercurve import DEFAULT_CURVE, curve_order, curve_through, user_weighting
 from corpus_tools.synthesis.viterbi import select_viterbi
 from corpus_tools.synthesis.weighting import WEIGHTINGS, weighting
@@ -34,6 +36,7 @@ __all__ = [
     "Pin",
     "PostureBasis",
     "SelectionModel",
+    "StandIn",
     "TimeRbf",
     "TimeWarp",
     "align_fragments",
@@ -59,9 +62,11 @@ __all__ = [
     "prepare_selection",
     "render_selection",
     "resample_uniform",
+    "rest_at_ends",
     "rms_acceleration",
     "select_greedy",
     "select_viterbi",
+    "stand_ins",
     "user_weighting",
     "weighting",
 ]

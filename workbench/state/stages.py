@@ -178,7 +178,7 @@ class Stages:
         key = (*key, *_values(config, "alignment"))
         pieces = self._stage("align", key, lambda: align_units(corpus, utterance, selection, config), ran)
         check()
-        key = (*key, *_values(config, "blend", "closure"))
+        key = (*key, *_values(config, "blend", "closure", "rest"))
         trajectory = self._stage("blend", key, lambda: blend_units(corpus, utterance, pieces, config), ran)
         check()
         head_key = (corpus, *_values(config, "retarget", "deform"))

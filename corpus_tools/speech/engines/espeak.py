@@ -49,6 +49,8 @@ _LETTER_A = "[['eI]]"
 
 _INSTALL = "install it with: pip install 'visual-speech-workbench[voice]'."
 _children: list[Children] = []
+_heard: list[str] = []
+"""The version that the last answer named."""
 
 
 def _folder() -> Path:
@@ -84,11 +86,14 @@ def prepare_espeak() -> None:
 
 
 def espeak_version() -> str:
-    """Return the version of the package that holds eSpeak NG, for manifests."""
+    """Return the versions of eSpeak NG and of the package that holds it, for manifests."""
     try:
-        return f"espeakng-loader {version('espeakng-loader')}"
+        package = version("espeakng-loader")
     except PackageNotFoundError:
         return "absent"
+    if not _heard:
+        _ask(SpeechRequest("version", text="a"), (), "a")
+    return f"eSpeak NG {_heard[0]} (espeakng-loader {package})"
 
 
 def _written(word: SpokenWord) -> str:
@@ -130,6 +135,7 @@ def _ask(request: SpeechRequest, words: Sequence[SpokenWord], text: str) -> tupl
         raise MissingExtraError(f"The voice eSpeak NG cannot be used ({head['broken']}); {_INSTALL}")
     if "error" in head:
         raise EngineError(f"The voice eSpeak NG cannot say this text ({head['error']}); change the text.")
+    _heard[:] = [str(head["version"]).split()[0]]
     return head, sound
 
 

@@ -104,6 +104,7 @@ def _library() -> tuple[Any, int]:
     rate_hz = library.espeak_Initialize(2, 0, data, PHONEME_EVENTS | DO_NOT_EXIT)
     if rate_hz <= 0:
         raise RuntimeError(f"eSpeak NG does not start with the data in {data.decode()!r}")
+    library.espeak_ng_SetRandSeed(ctypes.c_long(1))  # it took the time of day: breathy voices differed
     return library, rate_hz
 
 
