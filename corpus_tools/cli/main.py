@@ -23,7 +23,7 @@ Begin with your own recordings:
 
   corpus-tools check WORK
 
-  corpus-tools synth WORK --utterance NAME --out OUT
+  corpus-tools synth WORK --text "a sentence that nobody recorded" --out OUT
 
   workbench WORK
 """

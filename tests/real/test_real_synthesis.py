@@ -106,7 +106,7 @@ GRAMMAR = (
 
 
 def test_every_word_of_grid_is_spoken_as_its_recordings_label_it(grid):
-    """The phones of a word are one of the ways in which the recordings say it; no recording has 0, 5, 7, 9."""
+    """The phones of a word are one of the ways in which recordings say it; none has 0, 5, 7 or 9."""
     said = {}
     for recording in grid.recordings:
         for word in recording.utterance.words:
