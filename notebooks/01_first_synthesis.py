@@ -68,7 +68,7 @@ if recordings:
         settings={"frame_time": "centre", "head_scale": "true"},
     )
 else:
-    simulate_corpus(work / "corpus")
+    simulate_corpus(work / "corpus", n_sentences=14)
 corpus = open_corpus(work / "corpus")
 f"{len(corpus.names)} recordings, {corpus.inventory.n_phones} phones, {len(corpus.markers)} markers"
 

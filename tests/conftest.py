@@ -112,7 +112,7 @@ def simulated_corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from corpus_tools.demo import simulate_corpus
 
     folder = tmp_path_factory.mktemp("corpus") / "simulated"
-    simulate_corpus(folder)
+    simulate_corpus(folder, n_sentences=14)
     return folder
 
 

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from corpus_tools.cli.common import emit_json, progress_bar, say
-from corpus_tools.core import OutputError
-from corpus_tools.demo import simulate_corpus
+from corpus_tools.core import InputError, OutputError
+from corpus_tools.demo import LAYOUTS, N_SENTENCES, all_sentences, simulate_corpus, usual_voice
 from corpus_tools.io import find_recordings
 
 __all__ = ["register"]
@@ -17,20 +17,30 @@ __all__ = ["register"]
 
 def demo(
     folder: Annotated[Path, typer.Argument(help="New folder for the simulated corpus.")],
+    sentences: Annotated[
+        int, typer.Option("--sentences", help="How many of the 2880 time sentences to record.")
+    ] = N_SENTENCES,
     seed: Annotated[
         int, typer.Option("--seed", min=0, help="Another seed is another recording session.")
     ] = 0,
+    layout: Annotated[
+        str, typer.Option("--layout", help=f"Which markers there are: {', '.join(LAYOUTS)}.")
+    ] = "full",
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")] = False,
 ) -> None:
-    """Make a small simulated corpus: time sentences, 73 markers at 120 Hz, sound, labels."""
+    """Make a simulated corpus: time sentences of the embedded voice, 66 + 7 markers at 120 Hz, labels."""
     if folder.exists() and any(folder.iterdir() if folder.is_dir() else [folder]):
         raise OutputError(f"'{folder}' is there already; name a new folder for the simulated corpus.")
+    if not 1 <= sentences <= len(all_sentences()):
+        raise InputError(f"--sentences {sentences}: a number from 1 to {len(all_sentences())} was expected.")
+    voice = usual_voice()
     with progress_bar("simulating") as progress:
-        description = simulate_corpus(folder, seed=seed, progress=progress)
+        description = simulate_corpus(folder, sentences, seed, progress, layout=layout, voice=voice)
     n = len(find_recordings(description))
-    say(f"{folder}: {n} simulated recordings. Next: corpus-tools check {folder}, or: workbench {folder}")
+    say(f"{folder}: {n} simulated recordings, spoken by {voice.summary}.")
+    say(f"Next: corpus-tools check {folder}, or: workbench {folder}")
     if json_:
-        emit_json({"corpus": str(folder), "recordings": n, "simulated": True})
+        emit_json({"corpus": str(folder), "recordings": n, "simulated": True, "voice": voice.name})
 
 
 def register(app: typer.Typer) -> None:

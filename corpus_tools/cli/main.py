@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 import corpus_tools
-from corpus_tools.cli import bench, config, corpus, demo, synth
+from corpus_tools.cli import bench, config, corpus, demo, grammar, synth
 from corpus_tools.cli.common import guarded, say
 from corpus_tools.core import InputError
 
@@ -62,7 +62,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for module in (demo, corpus, synth, config, bench):
+for module in (demo, grammar, corpus, synth, config, bench):
     module.register(app)
 
 

@@ -90,9 +90,9 @@ def _pairs() -> list[tuple[int, int]]:
 def true_markers(articulators: FloatArray) -> FloatArray:
     """Return the face markers without any disturbance, (n_frames, 66, 3) mm, head at rest.
 
-    Constrictions are tasks of lips and jaw together: `close` brings the lips together and `bite` the lower lip
-    to the upper teeth whatever the jaw does. Lips never pass through each other: a pair that would is set to
-    touch half way.
+    Constrictions are tasks of lips and jaw together: `close` brings the lips together and `bite` the lower
+    lip to the upper teeth whatever the jaw does. Lips never pass through each other: a pair that would is set
+    to touch half way.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What cameras make of a talking actor: head motion, a slipping jig, skin, noise, spikes, swaps, occlusions."""
+"""What cameras make of an actor: head motion, a slipping jig, skin, noise, spikes, swaps, occlusions."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ class Disturbances:
 
     skin_mm: tuple[float, float] = (0.15, 0.3)
     sensor_mm: float = 0.05
-    spike_share: float = 5e-4
-    spike_mm: tuple[float, float] = (2.0, 8.0)
+    spike_share: float = 2e-4
+    spike_mm: tuple[float, float] = (1.5, 6.0)
     swap_chance: float = 0.06
     n_gaps: float = 2.0
     long_chance: float = 0.15
@@ -106,7 +106,9 @@ def _neighbours() -> tuple[tuple[int, ...], ...]:
     return tuple(tuple(int(j) for j in row if j != i) for i, row in enumerate(np.argsort(distance, axis=1)))
 
 
-def _band(n: int, rate_hz: float, low_hz: float, high_hz: float, rng: np.random.Generator, m: int) -> FloatArray:
+def _band(
+    n: int, rate_hz: float, low_hz: float, high_hz: float, rng: np.random.Generator, m: int
+) -> FloatArray:
     """Return band-limited noise, (n, m, 3); the rms length of each of the `m` vectors is 1."""
     spectrum = np.fft.rfft(rng.normal(size=(n, m, 3)), axis=0)
     frequency = np.fft.rfftfreq(n, 1.0 / rate_hz)
@@ -143,14 +145,16 @@ def _slipping_jig(
     if not slips:
         return np.repeat(jig[None], n, axis=0), float("nan")
     slip_s = where * n / rate_hz
-    turned = Rotation.from_rotvec(np.deg2rad(0.4) * axis / np.linalg.norm(axis)).apply(jig - centre) + centre
+    turned = Rotation.from_rotvec(np.deg2rad(0.2) * axis / np.linalg.norm(axis)).apply(jig - centre) + centre
     moved = turned + how.slip_mm * direction / np.linalg.norm(direction)
     u = np.clip((np.arange(n) / rate_hz - slip_s) / SLIP_S, 0.0, 1.0)
     share = (u * u * (3.0 - 2.0 * u))[:, None, None]
     return np.asarray((1.0 - share) * jig + share * moved), float(slip_s)
 
 
-def _spiked(shape: tuple[int, int], how: Disturbances, rng: np.random.Generator) -> tuple[BoolArray, FloatArray]:
+def _spiked(
+    shape: tuple[int, int], how: Disturbances, rng: np.random.Generator
+) -> tuple[BoolArray, FloatArray]:
     """Return which samples jump and how far they do, (n_frames, n_markers, 3) mm."""
     begins = rng.random(shape) < how.spike_share / 1.25
     spiked = begins.copy()
@@ -199,7 +203,9 @@ def _occluded(shape: tuple[int, int], how: Disturbances, rng: np.random.Generato
     return hidden
 
 
-def disturb(face: FloatArray, rate_hz: float, rng: np.random.Generator, how: Disturbances | None = None) -> Seen:
+def disturb(
+    face: FloatArray, rate_hz: float, rng: np.random.Generator, how: Disturbances | None = None
+) -> Seen:
     """Return what cameras would see of a talking actor.
 
     Every kind of disturbance has a generator of its own: to leave one out does not change the others.
@@ -227,6 +233,4 @@ def disturb(face: FloatArray, rate_hz: float, rng: np.random.Generator, how: Dis
     occluded = _occluded(swapped.shape, how, for_gaps)
     seen[occluded] = np.nan
     shown = ~occluded
-    return Seen(
-        seen, skin, jig, rotation, translation, spiked & shown, swapped & shown, occluded, slip_s
-    )
+    return Seen(seen, skin, jig, rotation, translation, spiked & shown, swapped & shown, occluded, slip_s)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from corpus_tools.core import Audio, Capture, FloatArray, Labels, Tier, atomic_folder, step
+from corpus_tools.core import Audio, BoolArray, Capture, FloatArray, Labels, Tier, atomic_folder, step
 from corpus_tools.demo.actor import layout_columns, marker_names, true_markers
 from corpus_tools.demo.capture import Disturbances, Seen, disturb
 from corpus_tools.demo.cover import covering_sentences
@@ -49,10 +49,10 @@ _README = """Simulated, not recorded: {n} sentences of the time domain (paper A,
 {stamp}
 
 The voice: {voice}.
-The motion: a simulated 120 Hz marker capture of the bundled head. Gestures of a task-dynamic model move its lips and
-jaw; private skin motion, sensor noise with spikes, markers that exchange their names, occlusions, head motion and a
-jig that slips are added, as optical capture has them. What was really there is in truth/, which no pattern of
-corpus.toml reads.
+The motion: a simulated 120 Hz marker capture of the bundled head. Gestures of a task-dynamic model move
+its lips and jaw; private skin motion, sensor noise with spikes, markers that exchange their names,
+occlusions, head motion and a jig that slips are added, as optical capture has them. What was really there
+is in truth/, which no pattern of corpus.toml reads.
 
 What to look out for:
 {events}
@@ -129,7 +129,7 @@ def corpus_stamp(voice: Voice, seed: int) -> str:
     return f"Version {VERSION} of the simulator, voice {voice.name} ({voice.version()}), seed {seed}."
 
 
-def _span(mask: FloatArray) -> str:
+def _span(mask: BoolArray) -> str:
     frames = np.flatnonzero(mask)
     return f"frames {frames[0]}-{frames[-1]}"
 

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from corpus_tools.core import BoolArray, InputError
 from corpus_tools.demo.grammar import Grammar, time_grammar
 from corpus_tools.demo.sentences import Sentence, diphones
+from corpus_tools.speech import phone_set, speak_text
 
-__all__ = ["Cover", "all_sentences", "covering_sentences", "greedy_cover", "pool_of"]
+__all__ = ["Cover", "all_sentences", "completed", "covering_sentences", "greedy_cover", "pool_of"]
 
 WORTH = 64.0
-"""How many diphones taken once more weigh as much as a new one, and so on (our choice: new ones come first)."""
+"""How many diphones taken once more weigh as much as a new one (our choice: new ones come first)."""
 
 LARGEST_POOL = 20_000
 """Larger grammars are covered from a random sample of their sentences."""
@@ -82,9 +83,27 @@ def greedy_cover(pool: Sequence[Sentence], n: int) -> Cover:
     return Cover(tuple(chosen), tuple(added), len(names))
 
 
+def completed(grammar: Grammar) -> Grammar:
+    """Return a grammar whose lexicon has every word: those that it lacks as the embedded voice says them.
+
+    Raises
+    ------
+    MissingExtraError
+        Words are missing, and so is the extra `voice`.
+    """
+    phones = phone_set("arpabet")
+    words = {word for slot in grammar.slots for part in slot for word in part.split()}
+    said = {
+        word: tuple(p for p in speak_text(word, phones).labels if p != phones.silence)
+        for word in sorted(words - set(grammar.lexicon))
+    }
+    return replace(grammar, lexicon={**grammar.lexicon, **said})
+
+
 def pool_of(grammar: Grammar, rng: np.random.Generator) -> list[Sentence]:
     """Return the sentences to choose from, in random order; a sample of a grammar with very many."""
-    return [grammar.pronounce(text) for text in grammar.sample(min(grammar.size, LARGEST_POOL), rng)]
+    spoken = completed(grammar)
+    return [spoken.pronounce(text) for text in spoken.sample(min(spoken.size, LARGEST_POOL), rng)]
 
 
 @functools.cache

@@ -1,4 +1,4 @@
-"""The simulated corpus that a first start shows: made once, kept in the user's cache, made anew when it changes."""
+"""The simulated corpus that a first start shows: kept in the user's cache, made anew when it changes."""
 
 from __future__ import annotations
 

@@ -31,8 +31,8 @@ _LEAST_S = {"close": 0.085, "bite": 0.085}
 """A constriction is asked for at least so long, however short its phone is: it has to be reached."""
 
 _CONSTRICTION, _BEYOND = 0.9, 1.2
-"""Targets from here on are constrictions, which must be met: they win over what blends with them, and aim beyond
-contact (the virtual targets of Loefqvist and Gracco 1997), where the lips then stay."""
+"""Targets from here on are constrictions, which must be met: they win over what blends with them, and aim
+beyond contact (the virtual targets of Loefqvist and Gracco 1997), where the lips then stay."""
 
 
 @dataclass(frozen=True, slots=True)

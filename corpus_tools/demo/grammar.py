@@ -6,7 +6,7 @@ import functools
 import itertools
 import math
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
@@ -24,9 +24,9 @@ __all__ = ["Grammar", "load_grammar", "time_grammar"]
 MOST_SENTENCES = 10**12
 """A grammar of more sentences is taken for a mistake (our choice)."""
 
-_EXPECTED = (
-    "a TOML file with [grammar], prompt = [names of slots] and one list of alternatives per slot was expected, "
-    "and [lexicon] with word = 'phones'"
+_FORM = (
+    "a TOML file with [grammar], prompt = [names of slots], one list of alternatives per slot, and [lexicon] "
+    "with word = 'PH ON ES'"
 )
 
 
@@ -41,15 +41,14 @@ class Grammar:
         The alternatives of each slot in order; "" leaves the slot out.
     lexicon : mapping of word -> phones
         How a word is said.
-    before, after : mapping of (word, neighbour) -> phones
-        How a word is said before, or else after, that neighbour, where it differs: "to" before "eight".
+    before : mapping of (word, next word) -> phones
+        How a word is said before that other, where it differs: "to" before "eight".
     """
 
     name: str
     slots: tuple[tuple[str, ...], ...]
     lexicon: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     before: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
-    after: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def size(self) -> int:
@@ -103,18 +102,12 @@ class Grammar:
         if missing:
             hint = suggestion(missing[0], self.lexicon)
             raise InputError(f"'{missing[0]}' is not in the lexicon of '{self.name}'{hint or '.'}")
-        near = (None, *words, None)
-        return Sentence(words, tuple(self._said(*near[i : i + 3]) for i in range(len(words))))
-
-    def _said(self, last: str | None, word: str | None, next_: str | None) -> tuple[str, ...]:
-        """Return the phones of a word between its neighbours."""
-        assert word is not None
-        found = self.before.get((word, next_ or "")) or self.after.get((word, last or ""))
-        return found or self.lexicon[word]
+        pairs = itertools.pairwise((*words, ""))
+        return Sentence(words, tuple(self.before.get(pair) or self.lexicon[pair[0]] for pair in pairs))
 
 
 def _refused(where: str, why: str) -> InputError:
-    return InputError(f"'{where}' is no grammar: {why}; {_EXPECTED}.")
+    return InputError(f"'{where}' is no grammar: {why}; {_FORM} was expected.")
 
 
 def _slots(data: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], ...]:
@@ -143,14 +136,10 @@ def _lexicon(data: Mapping[str, Any], key: str, n_words: int, where: str) -> dic
     if not isinstance(table, dict) or not all(
         isinstance(v, str) and v.split() and len(k.split()) == n_words for k, v in table.items()
     ):
-        form = "word" if n_words == 1 else "'word neighbour'"
+        form = "word" if n_words == 1 else "'word next'"
         raise _refused(where, f"[{key}] is not of the form {form} = 'PH ON ES'")
     phones = phone_set("arpabet")
     return {word: tuple(phones.normalise(p) for p in text.split()) for word, text in table.items()}
-
-
-def _pairs(data: Mapping[str, Any], key: str, where: str) -> dict[tuple[str, str], tuple[str, ...]]:
-    return {(k.split()[0], k.split()[1]): v for k, v in _lexicon(data, key, 2, where).items()}
 
 
 def _grammar(text: str, name: str, where: str) -> Grammar:
@@ -158,8 +147,8 @@ def _grammar(text: str, name: str, where: str) -> Grammar:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _refused(where, f"no TOML ({error})") from None
-    before, after = (_pairs(data, key, where) for key in ("before", "after"))
-    return Grammar(name, _slots(data, where), _lexicon(data, "lexicon", 1, where), before, after)
+    before = {(k.split()[0], k.split()[1]): v for k, v in _lexicon(data, "before", 2, where).items()}
+    return Grammar(name, _slots(data, where), _lexicon(data, "lexicon", 1, where), before)
 
 
 @functools.cache
@@ -184,5 +173,5 @@ def load_grammar(source: str | Path) -> Grammar:
         text = path.read_text(encoding="utf-8")
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "no text"
-        raise InputError(f"'{source}' cannot be read ({reason}); give 'time' or {_EXPECTED}.") from None
+        raise InputError(f"'{source}' cannot be read ({reason}); give 'time' or {_FORM}.") from None
     return _grammar(text, path.stem, str(source))

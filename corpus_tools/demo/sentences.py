@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import itertools
 import tomllib
-from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -76,7 +77,7 @@ class Truth:
 
 def write_truth(path: str | Path, truth: Truth) -> None:
     """Write the truth of a recording as a numpy archive; equal truths, equal bytes."""
-    arrays = {f.name: np.asarray(getattr(truth, f.name)) for f in fields(truth)}
+    arrays: dict[str, Any] = {f.name: np.asarray(getattr(truth, f.name)) for f in fields(truth)}
     arrays |= {key: arrays[key].astype(kind) for key, kind in _KEPT_AS.items()}
     with atomic_file(path) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, **arrays)

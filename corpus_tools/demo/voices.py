@@ -1,4 +1,4 @@
-"""Who speaks the sentences of the simulated corpus: the embedded voice, or a formant voice where it is missing."""
+"""Who speaks the simulated corpus: the embedded voice, or a formant voice where it is missing."""
 
 from __future__ import annotations
 
@@ -110,7 +110,8 @@ VOICES.add(
     "formants",
     Voice(
         "formants",
-        "a formant synthesiser, for the extra 'voice' is not installed: pip install 'visual-speech-workbench[voice]'",
+        "a formant synthesiser, for the extra 'voice' is not installed "
+        "(pip install 'visual-speech-workbench[voice]')",
         _formants,
         lambda: "1",
     ),

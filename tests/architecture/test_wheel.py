@@ -103,7 +103,7 @@ def test_the_commands_say_what_they_do(installed: Path) -> None:
 
 def test_a_sentence_is_synthesised_outside_the_checkout(installed: Path) -> None:
     command = installed / "env/bin/corpus-tools"
-    run(command, "demo", installed / "simulated", cwd=installed)
+    run(command, "demo", installed / "simulated", "--sentences", "14", cwd=installed)
     run(command, "check", installed / "simulated", "--json", cwd=installed)
     names = "from corpus_tools.io import find_recordings, read_description as r; import sys; "
     names += "print(find_recordings(r(sys.argv[1]))[0].id)"

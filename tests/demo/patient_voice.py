@@ -36,8 +36,8 @@ class PatientVoice:
     """Stands where :class:`corpus_tools.speech.engines.child.Children` stands, and keeps its child.
 
     The library keeps traces of what it said before (noise, phase), so that closures of stops may lie some ms
-    elsewhere; which phones it says does not depend on them: a test compares the two. What is the same for every
-    sentence, the choice of the voice and the number of phones of a word on its own, is asked once.
+    elsewhere; which phones it says does not depend on them: a test compares the two. What is the same for
+    every sentence, the choice of the voice and the number of phones of a word on its own, is asked once.
     """
 
     def __init__(self) -> None:

@@ -1,16 +1,28 @@
-"""The simulated corpus on disk: the same bytes again, whole or not at all, and good enough to work with."""
+"""The simulated corpus on disk: the same bytes again, whole or not at all, with the truth beside it."""
 
 import hashlib
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from corpus_tools.core import OutputError
-from corpus_tools.demo import VERSION, demo_folder, simulate_corpus, simulate_sentence
-from corpus_tools.demo.sentences import pronounce
+from corpus_tools.cleaning import clean_captures
+from corpus_tools.core import InputError, OutputError
+from corpus_tools.demo import (
+    UNDISTURBED,
+    VERSION,
+    VOICES,
+    marker_names,
+    read_truth,
+    simulate_corpus,
+    simulate_sentence,
+    time_grammar,
+)
 from corpus_tools.fragments import coverage
 from corpus_tools.io import find_recordings, load_capture, load_labels, read_description
-from corpus_tools.pipeline import check_corpus
+from corpus_tools.pipeline import check_corpus, health_lines
+
+KINDS = (("markers", "npz"), ("wav", "wav"), ("textgrid", "TextGrid"), ("truth", "npz"))
 
 
 def contents(folder):
@@ -35,28 +47,44 @@ def stop_at(fraction, error):
 
 def test_equal_arguments_give_equal_bytes_and_another_seed_another_corpus(tmp_path):
     for name, seed in (("one", 3), ("two", 3), ("other", 4)):
-        simulate_corpus(tmp_path / name, n_sentences=2, seed=seed)
+        simulate_corpus(tmp_path / name, n_sentences=3, seed=seed)
     one, two, other = (contents(tmp_path / n) for n in ("one", "two", "other"))
     assert one == two
-    assert set(one) == {
-        "NOTE.txt",
-        "corpus.toml",
-        *(
-            f"{f}/time0{i}.{e}"
-            for f, e in (("markers", "npz"), ("wav", "wav"), ("textgrid", "TextGrid"))
-            for i in (1, 2)
-        ),
-    }
-    assert set(one) == set(other)
+    files = {f"{folder}/time0{i}.{end}" for folder, end in KINDS for i in (1, 2, 3)}
+    assert set(one) == set(other) == {"README.txt", "corpus.toml", *files}
     for name in one:
         assert (one[name] == other[name]) == (name == "corpus.toml"), name
 
 
-def test_the_corpus_says_that_it_is_simulated(simulated_corpus):
+def test_a_smaller_corpus_is_the_beginning_of_a_larger_one(tmp_path):
+    for n in (2, 3):
+        simulate_corpus(tmp_path / str(n), n_sentences=n)
+    small, large = (contents(tmp_path / n) for n in "23")
+    shared = set(small) - {"README.txt"}
+    assert {name: small[name] for name in shared} == {name: large[name] for name in shared}
+
+
+def test_the_corpus_says_that_it_is_simulated_wherever_it_is_shown(simulated_corpus):
     description = read_description(simulated_corpus)
     assert "simulated" in description.name
     assert (description.frame_time, description.head_scale) == ("start", False)
-    assert (simulated_corpus / "NOTE.txt").read_text().startswith("Simulated, not recorded")
+    readme = (simulated_corpus / "README.txt").read_text()
+    assert readme.startswith("Simulated, not recorded")
+    assert f"Version {VERSION} of the simulator, voice espeak" in readme
+    assert "simulated" in health_lines(check_corpus(simulated_corpus))[0]
+
+
+def test_the_readme_lists_what_went_wrong_in_each_recording(simulated_corpus):
+    told = (simulated_corpus / "README.txt").read_text()
+    slips = swaps = 0
+    for path in sorted((simulated_corpus / "truth").iterdir()):
+        truth = read_truth(path)
+        slipped = np.isfinite(truth.slip_s)
+        assert (f"{path.stem}: the jig slips" in told) == slipped
+        assert (f"{path.stem}: " in told.replace(f"{path.stem}: the jig", "")) == bool(truth.swapped.any())
+        slips, swaps = slips + slipped, swaps + truth.swapped.any()
+    assert slips > 0
+    assert swaps > 0
 
 
 def test_recordings_fit_together(simulated_corpus):
@@ -66,7 +94,7 @@ def test_recordings_fit_together(simulated_corpus):
     for item in files:
         capture, labels = load_capture(description, item), load_labels(description, item)
         assert capture.rate_hz == 120.0
-        assert len(capture.names) == 73
+        assert capture.names == marker_names()
         assert abs(capture.audio.duration_s - capture.duration_s) <= 1 / 120
         assert labels.end_s == pytest.approx(capture.audio.duration_s, abs=1e-3)
         assert labels.names == ("phones", "words")
@@ -77,12 +105,13 @@ def test_it_opens_whole_and_check_finds_its_gaps_and_nothing_else(opened_corpus,
     assert len(opened_corpus.names) == 14
     assert np.isfinite(opened_corpus.neutral_mm).all()
     report = check_corpus(simulated_corpus)
-    assert report["summary"]["with_gaps"] == 14
     assert report["advice"] == []
     for row in report["recordings"]:
-        assert 1 <= len(row["gaps"]) <= 3
-        assert len(row["problems"]) == 1
-        assert "missing in frames" in row["problems"][0]
+        hidden = read_truth(simulated_corpus / "truth" / f"{row['id']}.npz").occluded.any(axis=1)
+        edges = np.flatnonzero(np.diff(np.r_[0, hidden, 0])).reshape(-1, 2) - [0, 1]
+        assert row["gaps"] == edges.tolist()
+        assert len(row["problems"]) == bool(row["gaps"])
+    assert 10 <= report["summary"]["with_gaps"] <= 14
 
 
 def test_a_sentence_held_out_is_covered_by_the_others(opened_corpus):
@@ -93,13 +122,48 @@ def test_a_sentence_held_out_is_covered_by_the_others(opened_corpus):
     assert min(shares) >= 0.6
 
 
-def test_capture_is_the_truth_disturbed():
-    made = simulate_sentence(pronounce("ten to five"), np.random.default_rng(0))
+def test_the_truth_and_what_was_done_to_it_give_the_capture(simulated_corpus):
+    description = read_description(simulated_corpus)
+    for item in find_recordings(description):
+        truth = read_truth(simulated_corpus / "truth" / f"{item.id}.npz")
+        capture = load_capture(description, item)
+        assert truth.names == capture.names
+        assert truth.rate_hz == capture.rate_hz
+        still = np.concatenate([truth.face_mm + truth.skin_mm, truth.jig_mm], axis=1)
+        seen = np.einsum("fij,fmj->fmi", truth.rotation, still) + truth.translation_mm[:, None]
+        left = np.linalg.norm(capture.positions_mm - seen, axis=2)
+        assert (np.isnan(left) == truth.occluded).all()
+        assert left[~(truth.occluded | truth.spiked | truth.swapped)].max() < 0.4, "sensor noise and rounding"
+
+
+def test_cleaning_brings_an_undisturbed_capture_back_to_the_truth():
+    made = simulate_sentence(time_grammar().pronounce("ten to five"), np.random.default_rng(0), UNDISTURBED)
+    cleaned = clean_captures([made.capture], range(66, 73), allow_scale=False, cutoff_hz=60.0).captures[0]
+    found = np.asarray(cleaned.positions_mm)[:, :66].reshape(-1, 3)
+    true = made.truth_mm.reshape(-1, 3)
+    turn, _ = Rotation.align_vectors(true - true.mean(0), found - found.mean(0))
+    assert np.abs(turn.apply(found - found.mean(0)) - (true - true.mean(0))).max() < 0.05
+
+
+def test_a_sentence_tells_how_it_was_made():
+    made = simulate_sentence(time_grammar().pronounce("ten to five"), np.random.default_rng(0))
     assert made.truth_mm.shape == (made.capture.n_frames, 66, 3)
-    assert np.isfinite(made.truth_mm).all()
-    assert np.isnan(made.capture.positions_mm).any()
     assert made.capture.history[0].name == "simulated"
     assert dict(made.capture.history[0].settings)["version"] == VERSION
+
+
+def test_another_voice_and_another_layout_can_be_asked_for_and_unknown_ones_are_refused(tmp_path):
+    simulate_corpus(tmp_path / "c", n_sentences=1, voice=VOICES["formants"], layout="outer-lips")
+    readme = (tmp_path / "c" / "README.txt").read_text()
+    assert "voice formants" in readme
+    assert "the extra 'voice' is not installed" in readme
+    description = read_description(tmp_path / "c")
+    capture = load_capture(description, find_recordings(description)[0])
+    assert len(capture.names) == 65
+    assert capture.audio.rate_hz == 16000
+    with pytest.raises(InputError, match="outer-lips"):
+        simulate_corpus(tmp_path / "d", n_sentences=1, layout="inner")
+    assert not (tmp_path / "d").exists()
 
 
 @pytest.mark.parametrize("error", [StoppedError(), KeyboardInterrupt()], ids=["cancelled", "ctrl-c"])
@@ -118,16 +182,10 @@ def test_an_occupied_place_is_an_output_error_and_stays_as_it_was(tmp_path):
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_demo_folder_is_made_once_and_made_anew_for_another_version(tmp_path):
+def test_progress_runs_from_nothing_to_all_in_words(tmp_path):
     reports = []
-    place = tmp_path / "cache" / "demo"
-    assert demo_folder(place, lambda f, w: reports.append(f)) == place
-    assert reports == sorted(reports)
-    assert reports[-1] == 1.0
-    before = contents(place)
-    assert demo_folder(place, stop_at(0.0, StoppedError())) == place, "the second call does no work"
-    note = place / "NOTE.txt"
-    note.write_text(note.read_text().replace(f"Version {VERSION}", "Version 0"))
-    (place / "markers" / "time99.npz").write_bytes(b"left over")
-    demo_folder(place)
-    assert contents(place) == before
+    simulate_corpus(tmp_path / "c", n_sentences=3, progress=lambda f, w: reports.append((f, w)))
+    fractions = [f for f, _ in reports]
+    assert fractions == sorted(fractions)
+    assert (fractions[0], fractions[-1]) == (0.0, 1.0)
+    assert reports[1][1] == "simulating sentence 2 of 3"

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from corpus_tools.demo import all_sentences, speak, time_phones
+from corpus_tools.demo import speak, time_grammar, time_phones
 from corpus_tools.speech import phone_set
 
 
 @pytest.fixture(scope="module")
 def voice():
-    phones, _ = time_phones(all_sentences()[3], np.random.default_rng(0))
+    sentence = time_grammar().pronounce("the time is now just after six in the afternoon")
+    phones, _ = time_phones(sentence, np.random.default_rng(0))
     return phones, speak(phones, np.random.default_rng(1))
 
 
@@ -44,7 +45,7 @@ def test_hisses_are_higher_than_vowels(voice):
         power = np.abs(np.fft.rfft(part)) ** 2
         return float((power * np.fft.rfftfreq(len(part), 1 / 16000)).sum() / power.sum())
 
-    hisses = [centroid_hz(p) for p in phones if p.text in {"S", "SH", "Z", "JH"}]
+    hisses = [centroid_hz(p) for p in phones if p.text in {"S", "SH", "F"}]
     vowels = [centroid_hz(p) for p in phones if p.text in {"AA", "AW", "AO", "AH", "AE", "AY"}]
     assert hisses
     assert min(hisses) > 2 * max(vowels)

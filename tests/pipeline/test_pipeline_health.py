@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from corpus_tools.core import Audio, Capture, CorpusError, Interval, Labels, Tier
-from corpus_tools.demo import Disturbances, covering_sentences, simulate_sentence
+from corpus_tools.demo import UNDISTURBED, covering_sentences, simulate_sentence
 from corpus_tools.io import (
     init_corpus,
     read_audio,
@@ -194,7 +194,7 @@ def video(tmp_path):
     """A corpus as a camera of 24 frames/s sees it: every frame shows the middle of its interval."""
     folder = tmp_path / "video"
     for index, sentence in enumerate(covering_sentences(6, np.random.default_rng(0))):
-        made = simulate_sentence(sentence, np.random.default_rng([5, index]), Disturbances(n_gaps=0))
+        made = simulate_sentence(sentence, np.random.default_rng([5, index]), UNDISTURBED)
         fine = np.asarray(made.capture.positions_mm)
         n = (len(fine) - 3) // 5
         frames = 0.5 * (fine[2 : 2 + 5 * n : 5] + fine[3 : 3 + 5 * n : 5])
