@@ -1,14 +1,15 @@
-"""One child process of the embedded voice that says many sentences: 2880 fresh ones would take minutes."""
+"""Children of the embedded voice that say many sentences each: 2880 fresh ones would take minutes."""
 
 from __future__ import annotations
 
 import importlib.util
 import json
+import queue
 import subprocess
 import sys
 from pathlib import Path
 
-from corpus_tools.speech.engines import espeak, espeak_worker
+from corpus_tools.speech.engines import espeak_worker
 
 _SERVE = """
 import functools, importlib.util, json, sys
@@ -33,33 +34,42 @@ while True:
 
 
 class PatientVoice:
-    """Stands where :class:`corpus_tools.speech.engines.child.Children` stands, and keeps its child.
+    """Stands where :class:`corpus_tools.speech.engines.child.Children` stands, and keeps its children.
 
     The library keeps traces of what it said before (noise, phase), so that closures of stops may lie some ms
     elsewhere; which phones it says does not depend on them: a test compares the two. What is the same for
     every sentence, the choice of the voice and the number of phones of a word on its own, is asked once.
+
+    Parameters
+    ----------
+    n : int
+        How many children: so many threads may ask at once.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, n: int) -> None:
         folder = Path(importlib.util.find_spec("espeakng_loader").submodule_search_locations[0]).parent
         command = [sys.executable, "-I", "-c", _SERVE, str(folder), espeak_worker.__file__]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._free = queue.SimpleQueue()
+        self._all = [
+            subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) for _ in range(n)
+        ]
+        for child in self._all:
+            self._free.put(child)
 
     def ask(self, request, limit_s):
         """Return the answer to a request, and the samples."""
-        espeak_worker.write_message(self.process.stdin, json.dumps(request).encode())
-        head = json.loads(espeak_worker.read_message(self.process.stdout))
-        return head, espeak_worker.read_message(self.process.stdout)
+        child = self._free.get(timeout=limit_s)
+        try:
+            espeak_worker.write_message(child.stdin, json.dumps(request).encode())
+            return json.loads(espeak_worker.read_message(child.stdout)), espeak_worker.read_message(
+                child.stdout
+            )
+        finally:
+            self._free.put(child)
 
     def close(self) -> None:
-        """End the child."""
-        self.process.stdin.close()
-        self.process.stdout.close()
-        self.process.wait(10)
-
-
-def speaking_patiently(monkeypatch) -> PatientVoice:
-    """Let the embedded voice answer from one child until the test is over."""
-    voice = PatientVoice()
-    monkeypatch.setattr(espeak, "_children", [voice])
-    return voice
+        """End the children."""
+        for child in self._all:
+            child.stdin.close()
+            child.stdout.close()
+            child.wait(10)

@@ -1,6 +1,7 @@
 """Every sentence of the time domain, as the embedded voice says it, is in the 55 of the demo corpus."""
 
 import itertools
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -27,12 +28,13 @@ FRESH = range(0, 2880, 320)
 
 @pytest.fixture(scope="module")
 def asked():
-    """What ``synth --text`` asks for, for every sentence: the utterances of the embedded voice."""
-    voice = PatientVoice()
+    """What a text asks for, for every sentence of the domain: the utterances of the embedded voice."""
+    voice = PatientVoice(2)
     patch = pytest.MonkeyPatch()
     patch.setattr("corpus_tools.speech.engines.espeak._children", [voice])
     try:
-        yield [speak_text(text, PHONES) for text in time_grammar().texts()]
+        with ThreadPoolExecutor(2) as pool:
+            yield list(pool.map(lambda text: speak_text(text, PHONES), time_grammar().texts()))
     finally:
         patch.undo()
         voice.close()

@@ -119,7 +119,7 @@ def test_lips_close_in_every_bilabial_and_open_in_open_vowels(opened_corpus):
             if phone.text in opened_corpus.phones.bilabials:
                 assert aperture[inside].min() <= lips.target_mm + 0.15, (name, phone)
                 seen += 1
-            elif phone.text in {"AA", "AY", "AW", "AE"}:
+            elif phone.text in {"AA", "AY", "AW", "AE"} and phone.duration_s > 0.06:  # shorter: undershoot
                 assert aperture[inside].max() > 4.0, (name, phone)
     assert seen > 5
 
