@@ -33,7 +33,10 @@ def _settings(pairs: list[str]) -> dict[str, str]:
 def init(
     folder: Annotated[Path, typer.Argument(help="New folder for corpus.toml and the work files.")],
     motion: Annotated[
-        str, typer.Option("--motion", help="Pattern of the marker files, e.g. 'markers/{id}.npz'.")
+        str,
+        typer.Option(
+            "--motion", help="Pattern of the motion files (npz, c3d, trc, csv, mat), e.g. 'm/{id}.c3d'."
+        ),
     ],
     audio: Annotated[str | None, typer.Option("--audio", help="Pattern of the sound files.")] = None,
     labels: Annotated[str | None, typer.Option("--labels", help="Pattern of the TextGrids.")] = None,
@@ -42,7 +45,8 @@ def init(
         typer.Option(
             "--set",
             help="KEY=VALUE for corpus.toml: frame_time=start|centre, head_scale=true|false, phones=arpabet, "
-            "marker_units=mm, reference_markers='head*', language=en, ... May stand several times.",
+            "marker_units=mm, marker_axes=x,z,-y, rate_hz=120, "
+            "reference_markers='head*', language=en, ... May stand several times.",
         ),
     ] = None,
     json_: Json = False,

@@ -18,6 +18,7 @@ from corpus_tools.io.description import (
     CORPUS_FILE,
     CorpusDescription,
     description_from_dict,
+    parsed_axes,
     write_description,
 )
 from corpus_tools.io.formats import read_audio, read_labels, read_markers
@@ -27,12 +28,13 @@ __all__ = ["RecordingFiles", "find_recordings", "init_corpus", "load_audio", "lo
 FARTHEST_MM = 1e6
 """No face is captured a kilometre from the origin (our choice): such numbers are another unit, or damage."""
 
-_TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4}
 _SETTABLE = (
     "frame_time",
     "head_scale",
     "phones",
     "marker_units",
+    "marker_axes",
+    "rate_hz",
     "reference_markers",
     "language",
     "name",
@@ -40,6 +42,11 @@ _SETTABLE = (
     "word_tier",
     "audio_offset_s",
 )
+
+_NUMBERS = {
+    "audio_offset_s": "seconds were expected, as in 0.02",
+    "rate_hz": "a number of Hz was expected, as in 120",
+}
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -114,27 +121,28 @@ def load_audio(files: RecordingFiles) -> Audio | None:
 
 
 def load_capture(description: CorpusDescription, files: RecordingFiles) -> Capture:
-    """Read the motion of a recording: mm, on the clock of its audio, audio attached.
+    """Read the motion of a recording: mm, y up, on the clock of its audio, audio attached.
 
-    Frame times follow ``frame_time`` (GRID video frames are centred) and ``audio_offset_s``.
+    What the file does not say comes from ``marker_units``, ``marker_axes`` and ``rate_hz``. Frame times
+    follow ``frame_time`` (GRID video frames are centred) and ``audio_offset_s``.
 
     Raises
     ------
     InputError
         A file cannot be read, or a marker lies impossibly far away.
     """
-    capture = read_markers(files.motion)
-    factor = _TO_MM[description.marker_units]
-    farthest = np.abs(np.nan_to_num(capture.positions_mm)).max() * factor
+    capture = read_markers(files.motion, rate_hz=description.rate_hz or None, units=description.marker_units)
+    farthest = np.abs(np.nan_to_num(capture.positions_mm)).max()
     if farthest > FARTHEST_MM:
         raise MotionError(
             f"'{files.motion}' has a marker {farthest:.3g} mm from the origin, where a face within "
             f"{FARTHEST_MM:.0e} mm was expected; check 'marker_units' in '{description.file}'."
         )
+    columns, signs = parsed_axes(description.marker_axes, f"'{description.file}'")
     half = 0.5 / capture.rate_hz if description.frame_time == "centre" else 0.0
     return replace(
         capture,
-        positions_mm=np.asarray(capture.positions_mm) * factor,
+        positions_mm=capture.positions_mm[:, :, list(columns)] * np.array(signs),
         start_s=half + description.audio_offset_s,
         audio=load_audio(files),
     )
@@ -166,11 +174,11 @@ def _setting(key: str, text: str) -> Any:
         if text.lower() not in ("true", "false"):
             raise CorpusError(f"--set head_scale={text}: true or false was expected.")
         return text.lower() == "true"
-    if key == "audio_offset_s":
+    if key in _NUMBERS:
         try:
             return float(text)
         except ValueError:
-            raise CorpusError(f"--set audio_offset_s={text}: seconds were expected, as in 0.02.") from None
+            raise CorpusError(f"--set {key}={text}: {_NUMBERS[key]}.") from None
     return text
 
 

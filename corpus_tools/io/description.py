@@ -14,12 +14,14 @@ import tomli_w
 
 from corpus_tools.core import CorpusError, atomic_file
 from corpus_tools.core.errors import suggestion
+from corpus_tools.io.motion_parts import mm_per
 
 __all__ = [
     "CORPUS_FILE",
     "SCHEMA",
     "CorpusDescription",
     "description_from_dict",
+    "parsed_axes",
     "read_description",
     "write_description",
 ]
@@ -27,7 +29,7 @@ __all__ = [
 CORPUS_FILE = "corpus.toml"
 SCHEMA = 1
 
-_CHOICES = {"frame_time": ("start", "centre"), "marker_units": ("mm", "cm", "m", "inch")}
+_CHOICES = {"frame_time": ("start", "centre")}
 _NEEDED = ("motion", "phones", "phone_tier", "language", "reference_markers")
 _HEADER = (
     "# A corpus of the visual speech workbench: it describes recordings and leaves them where they are.\n"
@@ -51,7 +53,13 @@ class CorpusDescription:
         Frame i shows time i / rate, or (i + 0.5) / rate (video).
     head_scale : bool
         Head removal may scale (monocular video needs it, optical capture must not have it).
-    marker_units : {"mm", "cm", "m", "inch"}
+    marker_units : str
+        Unit of the positions: mm, cm, m, inch, or a multiple such as "250 mm"; empty: the files say it.
+    marker_axes : str
+        Which axes of the motion files point to the side, up, and out of the face: "x,y,z", or for instance
+        "x,z,-y" where z is up.
+    rate_hz : float
+        Frame rate of motion files that do not say it; 0: they say it.
     reference_markers : str
         Globs, comma separated, of the markers that move with the skull.
     phone_tier, word_tier : str
@@ -70,7 +78,9 @@ class CorpusDescription:
     phones: str = "arpabet"
     frame_time: str = "start"
     head_scale: bool = False
-    marker_units: str = "mm"
+    marker_units: str = ""
+    marker_axes: str = "x,y,z"
+    rate_hz: float = 0.0
     reference_markers: str = "head*"
     phone_tier: str = "phones"
     word_tier: str = "words"
@@ -101,10 +111,38 @@ def _check_value(where: str, key: str, value: Any) -> Any:
         raise CorpusError(f"{where}: {key} = {value} is not a finite number.")
     if key in _NEEDED and not value.strip():
         raise CorpusError(f"{where}: {key} is empty; {_wanted_word(key)} was expected.")
+    if key == "marker_units" and value and mm_per(value) is None:
+        raise CorpusError(f"{where}: marker_units = '{value}' is none of mm, cm, m, inch, or as '250 mm'.")
     if key in _CHOICES and value not in _CHOICES[key]:
-        hint = suggestion(str(value), _CHOICES[key])
-        raise CorpusError(f"{where}: {key} = '{value}' is none of {', '.join(_CHOICES[key])}{hint or '.'}")
+        hint, known = suggestion(str(value), _CHOICES[key]), ", ".join(_CHOICES[key])
+        raise CorpusError(f"{where}: {key} = '{value}' is none of {known}{hint or '.'}")
+    if key == "marker_axes":
+        parsed_axes(str(value), where)
+    if key == "rate_hz" and float(value) < 0:
+        raise CorpusError(
+            f"{where}: rate_hz = {value:g} is no frame rate; a positive number of Hz was expected."
+        )
     return value
+
+
+def parsed_axes(text: str, where: str) -> tuple[tuple[int, int, int], tuple[float, float, float]]:
+    """Return the columns and signs that ``marker_axes`` means.
+
+    Raises
+    ------
+    CorpusError
+        It does not name each axis once, or would turn the face into its mirror image.
+    """
+    words = [w.strip().lower() for w in text.split(",")]
+    columns = ["xyz".find(w.lstrip("+-")) if len(w.lstrip("+-")) == 1 else -1 for w in words]
+    signs = [-1.0 if w.startswith("-") else 1.0 for w in words]
+    if sorted(columns) != [0, 1, 2] or any(len(w) > 2 for w in words):
+        raise CorpusError(f"{where}: marker_axes = '{text}' is not of the form 'x,z,-y': each axis once.")
+    a, b, c = columns
+    even = (a, b, c) in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+    if (1.0 if even else -1.0) * signs[0] * signs[1] * signs[2] < 0:
+        raise CorpusError(f"{where}: marker_axes = '{text}' mirrors the face: change the sign of one axis.")
+    return (a, b, c), (signs[0], signs[1], signs[2])
 
 
 def _wanted_word(key: str) -> str:

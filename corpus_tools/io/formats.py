@@ -1,21 +1,58 @@
-"""Registries of readers: a new format is one file with a function, and one entry here by its suffix."""
+"""Registries of readers and writers: a new format is one file with a function, and one entry here."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Protocol
 
-from corpus_tools.core import Audio, Capture, InputError, Labels, Registry
+from corpus_tools.core import Audio, Capture, FloatArray, InputError, Labels, Registry
 
-__all__ = ["AUDIO_READERS", "LABEL_READERS", "MOTION_READERS", "read_audio", "read_labels", "read_markers"]
+__all__ = [
+    "AUDIO_READERS",
+    "LABEL_READERS",
+    "LARGEST_BYTES",
+    "MOTION_READERS",
+    "MOTION_WRITERS",
+    "MotionReader",
+    "MotionWriter",
+    "read_audio",
+    "read_labels",
+    "read_markers",
+]
 
-MOTION_READERS: Registry[Callable[[Path], Capture]] = Registry("motion format")
+LARGEST_BYTES = 1 << 30
+"""Motion and label files above this size are refused before they are opened (our choice: three hours of 70
+markers at 120 Hz as C3D)."""
+
+
+class MotionReader(Protocol):
+    """Reads one motion file into mm; `rate_hz` and `units` are the caller's, and stand above the file's.
+
+    What had to be guessed, mended or left out is told in the first step of the history.
+    """
+
+    def __call__(self, path: Path, *, rate_hz: float | None = None, units: str = "") -> Capture:
+        """Return the motion of `path`."""
+
+
+class MotionWriter(Protocol):
+    """Writes positions (n_frames, n_markers, 3) in mm, NaN where missing, as one motion file."""
+
+    def __call__(
+        self, path: str | Path, positions_mm: FloatArray, names: Sequence[str], rate_hz: float
+    ) -> None:
+        """Write `path`, whole or not at all."""
+
+
+MOTION_READERS: Registry[MotionReader] = Registry("motion format")
+MOTION_WRITERS: Registry[MotionWriter] = Registry("motion format for writing")
 LABEL_READERS: Registry[Callable[[Path], Labels]] = Registry("label format")
 AUDIO_READERS: Registry[Callable[[Path], Audio]] = Registry("sound format")
 
 
-def _reader_for(path: Path, readers: Registry, what: str) -> Callable[[Path], object]:  # type: ignore[type-arg]
+def _reader_for(path: Path, readers: Registry, what: str) -> Callable[..., object]:  # type: ignore[type-arg]
     if not os.path.exists(path):  # noqa: PTH110 - False also for names that no file system takes
         raise InputError(f"There is no {what} file '{path}'; check the path.")
     if not path.is_file():
@@ -24,31 +61,43 @@ def _reader_for(path: Path, readers: Registry, what: str) -> Callable[[Path], ob
     if suffix not in readers:
         known = ", ".join(readers)
         raise InputError(f"'{path}' has the suffix '{suffix}'; {what} files that can be read: {known}.")
-    if path.stat().st_size == 0:
+    size = path.stat().st_size
+    if size == 0:
         raise InputError(f"The {what} file '{path}' is empty.")
-    reader: Callable[[Path], object] = readers[suffix]
+    if size > LARGEST_BYTES and readers is not AUDIO_READERS:
+        raise InputError(
+            f"The {what} file '{path}' has {size / 2**30:.1f} GB, more than the {LARGEST_BYTES >> 30} GB "
+            "that are read at once; cut it into recordings of one sentence each."
+        )
+    reader: Callable[..., object] = readers[suffix]
     return reader
 
 
-def read_markers(path: str | Path) -> Capture:
-    """Read a motion file of any registered format.
+def read_markers(path: str | Path, *, rate_hz: float | None = None, units: str = "") -> Capture:
+    """Read a motion file of any registered format; which layout it has is seen from its content.
 
     Parameters
     ----------
     path : path
+    rate_hz : float, optional
+        Frame rate, for files that do not say it; where both do, this one is taken and the history tells.
+    units : {"", "mm", "cm", "m", "inch"}
+        Unit of the positions, likewise; empty: the file says it.
 
     Returns
     -------
     Capture
-        Positions in the unit of the file, NaN where a marker is missing.
+        Positions in mm, NaN where a marker is missing. The step ``read`` of its history has ``notes``:
+        sentences on what was doubtful in the file.
 
     Raises
     ------
     InputError
-        The file is missing, empty, of an unknown format or not what its suffix says; the message names it.
+        The file is missing, empty, too large, of an unknown format or not what its suffix says; the message
+        names it.
     """
     file = Path(path)
-    capture = _reader_for(file, MOTION_READERS, "motion")(file)
+    capture = _reader_for(file, MOTION_READERS, "motion")(file, rate_hz=rate_hz, units=units)
     assert isinstance(capture, Capture)
     return capture
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from corpus_tools.core import Capture, MotionError, atomic_file
-from corpus_tools.io.formats import MOTION_READERS
+from corpus_tools.core import Capture, FloatArray, MotionError, atomic_file
+from corpus_tools.io.formats import MOTION_READERS, MOTION_WRITERS
+from corpus_tools.io.motion_parts import Notes, capture_of, chosen_rate, unit_factor
+from corpus_tools.io.writing import checked_motion
 
 __all__ = ["read_markers_npz", "write_markers_npz"]
 
@@ -18,13 +21,16 @@ _EXPECTED = "a numpy archive with xyz (frames, markers, 3), fps and names was ex
 
 
 @MOTION_READERS.register(".npz")
-def read_markers_npz(path: Path) -> Capture:
+def read_markers_npz(path: Path, *, rate_hz: float | None = None, units: str = "") -> Capture:
     """Read marker motion from a numpy archive; nothing in it is ever unpickled.
 
     Parameters
     ----------
     path : Path
-        Arrays ``xyz`` (n_frames, n_markers, 3), ``fps`` (a number, Hz), ``names`` (n_markers,).
+        Arrays ``xyz`` (n_frames, n_markers, 3), ``fps`` (a number, Hz), ``names`` (n_markers,), and, when the
+        positions are not in mm, ``units`` (a text that begins with the unit).
+    rate_hz, units
+        As in :func:`~corpus_tools.io.formats.read_markers`.
 
     Raises
     ------
@@ -41,18 +47,30 @@ def read_markers_npz(path: Path) -> Capture:
                     f"'{path}' has no array {missing[0]} (it has {', '.join(archive.files)}): {_EXPECTED}."
                 )
             xyz, fps, names = archive["xyz"], archive["fps"], archive["names"]
-        if not all(isinstance(a, np.ndarray) for a in (xyz, fps, names)):
+            unit = archive["units"] if "units" in archive.files else np.array("mm")
+        if not all(isinstance(a, np.ndarray) for a in (xyz, fps, names, unit)):
             raise MotionError(f"'{path}' holds something else under the names of its arrays: {_EXPECTED}.")
     except MotionError:
         raise
     except Exception as error:  # zipfile, zlib and numpy raise a dozen kinds on a broken archive
         reason = " ".join(str(error).split())[:120].rstrip(".") or type(error).__name__
         raise MotionError(f"'{path}' cannot be read as marker motion ({reason}): {_EXPECTED}.") from None
-    return _capture(path, xyz, fps, names)
+    _check(path, xyz, fps, names)
+    notes: Notes = []
+    rate = chosen_rate(path, float(fps.reshape(())), rate_hz, notes)
+    factor = unit_factor(path, _stated_unit(unit), units, notes)
+    labels = [str(n) for n in names]
+    return capture_of(path, xyz.astype(np.float64) * factor, labels, rate, format="npz", notes=notes)
 
 
-def _capture(path: Path, xyz: npt.NDArray[Any], fps: npt.NDArray[Any], names: npt.NDArray[Any]) -> Capture:
-    """Make a :class:`Capture` of the three arrays, refusing what is no motion."""
+def _stated_unit(unit: npt.NDArray[Any]) -> str:
+    """Return the first word of the array ``units``: "mm (file unit cm x10)" means mm."""
+    words = str(unit.reshape(-1)[0]).split() if unit.dtype.kind == "U" and unit.size == 1 else []
+    return words[0] if words else "mm"
+
+
+def _check(path: Path, xyz: npt.NDArray[Any], fps: npt.NDArray[Any], names: npt.NDArray[Any]) -> None:
+    """Refuse arrays that are no motion."""
     if xyz.dtype.kind not in "fiu" or fps.size != 1 or fps.dtype.kind not in "fiu":
         raise MotionError(
             f"'{path}' holds xyz of {xyz.dtype} and fps of {fps.dtype} {fps.shape}: {_EXPECTED}."
@@ -61,22 +79,20 @@ def _capture(path: Path, xyz: npt.NDArray[Any], fps: npt.NDArray[Any], names: np
         raise MotionError(
             f"'{path}' holds names of {names.dtype} {names.shape}; a row of texts was expected."
         )
-    rate_hz = float(fps.reshape(()))
-    if not np.isfinite(rate_hz) or rate_hz <= 0:
-        raise MotionError(f"'{path}' says fps = {rate_hz:g}; a positive frame rate in Hz was expected.")
+    if not np.isfinite(fps).all() or not (fps > 0).all():
+        raise MotionError(f"'{path}' says fps = {fps.reshape(()):g}; a positive rate in Hz was expected.")
     if not xyz.size:
         raise MotionError(f"'{path}' holds no frames or no markers (xyz has shape {xyz.shape}).")
-    try:
-        capture = Capture(xyz, rate_hz, tuple(str(n) for n in names))
-    except MotionError as error:
-        raise MotionError(f"'{path}': {error}") from None
-    frames, markers, _ = np.nonzero(np.isinf(capture.positions_mm))
-    if len(frames):
-        raise MotionError(
-            f"'{path}': marker '{capture.names[markers[0]]}' is infinitely far off in frame {frames[0]}; "
-            "a missing position must be NaN."
-        )
-    return capture
+    if xyz.ndim != 3 or xyz.shape[2] != 3:
+        raise MotionError(f"'{path}' holds xyz of shape {xyz.shape}; (frames, markers, 3) was expected.")
+    if xyz.shape[1] != len(names):
+        raise MotionError(f"'{path}': there are {xyz.shape[1]} markers and {len(names)} marker names.")
+
+
+@MOTION_WRITERS.register("npz")
+def _write_npz(path: str | Path, positions_mm: FloatArray, names: Sequence[str], rate_hz: float) -> None:
+    positions, labels = checked_motion(path, positions_mm, names, rate_hz)
+    write_markers_npz(path, Capture(positions, rate_hz, tuple(labels)))
 
 
 def write_markers_npz(path: str | Path, capture: Capture) -> None:

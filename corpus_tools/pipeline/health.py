@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from corpus_tools.cleaning import clean_captures, gaps
-from corpus_tools.core import Capture, Labels, Utterance, WorkbenchError
+from corpus_tools.core import Capture, CorpusError, Labels, Utterance, WorkbenchError
 from corpus_tools.io import (
     CorpusDescription,
     RecordingFiles,
@@ -18,9 +18,11 @@ from corpus_tools.io import (
     load_capture,
     load_labels,
     read_description,
+    reading_notes,
 )
+from corpus_tools.pipeline.lacking import axes_advice, what_is_lacking
 from corpus_tools.pipeline.opened import Progress, reference_columns, silent
-from corpus_tools.pipeline.usable import motion_problem, seen_markers, usual_markers
+from corpus_tools.pipeline.usable import in_order_of, motion_problem, seen_markers, usual_markers
 from corpus_tools.speech import PhoneSet, closure_offset, phone_set, recorded_utterance
 
 __all__ = ["check_corpus", "health_lines"]
@@ -62,10 +64,12 @@ def _read(description: CorpusDescription, item: RecordingFiles, phones: PhoneSet
     except WorkbenchError as error:
         entry.problems.append(str(error))
         return entry
+    entry.problems.extend(reading_notes(entry.capture))
     if item.audio is None and description.audio:
         entry.problems.append(f"no audio file: '{description.audio}' with id {item.id} is not there.")
     if item.labels is None:
-        entry.problems.append("no labels: it cannot give units until it is labelled.")
+        if description.labels:
+            entry.problems.append("no labels: it cannot give units until it is labelled.")
         return entry
     try:
         entry.labels = load_labels(description, item)
@@ -122,6 +126,7 @@ def _check_alike(entries: Sequence[_Entry]) -> None:
     for entry in entries:
         if entry.capture is None:
             continue
+        entry.capture = in_order_of(entry.capture, names)
         if abs(entry.capture.rate_hz - rate) > 1e-6 * rate:
             entry.problems.append(f"frame rate {entry.capture.rate_hz:g} Hz; the others have {rate:g} Hz.")
         if entry.capture.names != names:
@@ -183,7 +188,8 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
     dict
         ``recordings``: id, n_frames, rate_hz, duration_s, gaps ([first, last] frames, inclusive), problems;
         ``summary``: counts; ``head_scale_sd``; ``closure_offset_s``: by how much later (s) the motion would
-        have to lie for the lips to be closed in the bilabials; ``advice``: lines for corpus.toml.
+        have to lie for the lips to be closed in the bilabials; ``advice``: lines for corpus.toml;
+        ``told``: what the corpus lacks, and what it can do without.
 
     Raises
     ------
@@ -202,7 +208,16 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
         _check_gaps(entry)
     _check_alike(entries)
     progress(0.75, "head motion and lip closures")
-    advice = _advice(description, _usable(description, entries, phones), phones)
+    told = what_is_lacking(description)
+    try:
+        advice = _advice(description, _usable(description, entries, phones), phones)
+    except CorpusError as error:  # no rigid markers: a corpus that is only read needs none
+        if any(e.utterance for e in entries):
+            raise
+        told.append(str(error))
+        advice = {}
+    if axes := axes_advice(description, [e.capture for e in entries if e.capture]):
+        advice["advice"] = [*advice.get("advice", []), *axes]
     rows = [entry.row() for entry in entries]
     summary = {
         "recordings": len(rows),
@@ -211,7 +226,7 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
         "with_gaps": sum(bool(r["gaps"]) for r in rows),
         "with_problems": sum(bool(r["problems"]) for r in rows),
     }
-    return {"corpus": description.name, "summary": summary, **advice, "recordings": rows}
+    return {"corpus": description.name, "summary": summary, **advice, "told": told, "recordings": rows}
 
 
 def health_lines(report: dict[str, Any]) -> list[str]:
@@ -230,6 +245,7 @@ def health_lines(report: dict[str, Any]) -> list[str]:
             f"Lips close best when the motion is moved by {1000 * report['closure_offset_s']:+.0f} ms "
             "against the labels (0 is right)."
         )
+    lines += report.get("told", [])
     lines += [f"Advice: set '{line}' in corpus.toml." for line in report.get("advice", [])]
     for row in sorted(report["recordings"], key=lambda r: -len(r["problems"])):
         lines += [f"  {row['id']}: {problem}" for problem in row["problems"]]

@@ -35,7 +35,13 @@ from corpus_tools.io import (
 )
 from corpus_tools.pipeline.closing import LipModel, lip_model
 from corpus_tools.pipeline.threads import one_thread
-from corpus_tools.pipeline.usable import chosen_markers, motion_problem, seen_markers, usual_markers
+from corpus_tools.pipeline.usable import (
+    chosen_markers,
+    in_order_of,
+    motion_problem,
+    seen_markers,
+    usual_markers,
+)
 from corpus_tools.speech import PhoneSet, lip_aperture_mm, phone_set, recorded_utterance
 from corpus_tools.synthesis import (
     NaturalDistribution,
@@ -181,6 +187,7 @@ def _usable(
     if not loaded:
         return loaded
     names = usual_markers(capture for capture, _ in loaded)
+    loaded = [(in_order_of(capture, names), utterance) for capture, utterance in loaded]
     usual = next(utterance.name for capture, utterance in loaded if capture.names == names)
     columns = reference_columns(description, next(c for c, _ in loaded if c.names == names))
     kept = []

@@ -14,6 +14,7 @@ __all__ = [
     "COVER_TOLERANCE_S",
     "LEAST_RATE_HZ",
     "chosen_markers",
+    "in_order_of",
     "motion_problem",
     "seen_markers",
     "usual_markers",
@@ -41,6 +42,13 @@ def chosen_markers(capture: Capture, keep: Sequence[int]) -> Capture:
         regions=tuple(capture.regions[i] for i in keep),
         flags=capture.flags[:, keep],
     )
+
+
+def in_order_of(capture: Capture, names: Sequence[str]) -> Capture:
+    """Return a capture with its markers in the order of `names`; as it is when it has others."""
+    if capture.names == tuple(names) or sorted(capture.names) != sorted(names):
+        return capture
+    return chosen_markers(capture, [capture.names.index(n) for n in names])
 
 
 def seen_markers(captures: Iterable[Capture]) -> list[int]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import wave
 
+import ezc3d
 import numpy as np
 import pytest
 
-from corpus_tools.core import LabelError, PointTier, Tier
+from corpus_tools.core import InputError, LabelError, MotionError, PointTier, Tier
 from corpus_tools.io import (
+    MOTION_READERS,
     find_recordings,
     init_corpus,
     load_capture,
@@ -17,6 +19,7 @@ from corpus_tools.io import (
     read_audio,
     read_labels,
     read_markers,
+    reading_notes,
     write_textgrid,
     write_wav,
 )
@@ -127,3 +130,107 @@ def test_a_real_textgrid_cut_in_half_is_refused(grid, tmp_path):
         (tmp_path / "half.TextGrid").write_bytes(data[: len(data) // 2])
         with pytest.raises(LabelError, match=r"half\.TextGrid"):
             read_labels(tmp_path / "half.TextGrid")
+
+
+def refused(path, **given_by_caller):
+    before = path.read_bytes()
+    with pytest.raises(MotionError) as caught:
+        read_markers(path, **given_by_caller)
+    message = str(caught.value)
+    assert str(path) in message
+    assert "\n" not in message
+    assert path.read_bytes() == before
+    return message
+
+
+def test_c3d_with_gaps_reads_as_ezc3d_reads_it(corpora):
+    path = corpora / "pyomeca_c3d" / "markers_analogs.c3d"
+    capture = read_markers(path)
+    oracle = ezc3d.c3d(str(path))
+    np.testing.assert_array_equal(capture.positions_mm, oracle["data"]["points"][:3].transpose(2, 1, 0))
+    assert list(capture.names) == oracle["parameters"]["POINT"]["LABELS"]["value"]
+    assert capture.positions_mm.shape == (580, 51, 3)
+    assert capture.rate_hz == 100.0
+    missing = np.isnan(capture.positions_mm).any(axis=2)
+    assert missing.mean() == pytest.approx(0.0103, abs=5e-5)
+    assert missing.any(axis=0).sum() == 13
+    assert sum(n.startswith("boite:") for n in capture.names) == 8
+    assert not reading_notes(capture)
+
+
+def test_a_vicon_export_holds_the_frames_of_its_c3d(corpora):
+    exported = read_markers(corpora / "pyomeca_c3d" / "markers.csv")
+    capture = read_markers(corpora / "pyomeca_c3d" / "markers_analogs.c3d")
+    assert (exported.names, exported.rate_hz) == (capture.names, capture.rate_hz)
+    np.testing.assert_allclose(exported.positions_mm, capture.positions_mm, atol=0.006)
+
+
+def test_tables_of_marker_capture_hold_what_the_archives_hold(corpora):
+    for take in ("Jaw", "Cheeks", "Eyebrows", "Nose"):
+        table = read_markers(corpora / "animface_mocap" / f"{take}MoCap.csv", units="mm")
+        archive = read_markers(corpora / "animface_mocap" / f"{take}MoCap.npz")
+        assert table.names == archive.names
+        assert table.rate_hz == 60.0
+        assert not reading_notes(table)
+        np.testing.assert_allclose(table.positions_mm, archive.positions_mm, atol=6e-4)
+
+
+def test_a_trc_whose_header_lies_is_told_what_it_says_and_holds(corpora):
+    message = refused(corpora / "pyomeca_c3d" / "markers.trc")
+    assert "commas" in message
+    assert "652 frames and 93 rows" in message
+
+
+def test_tracked_faces_need_a_rate_and_are_read_by_name(corpora):
+    paths = [corpora / "blenderface" / f"Subject_0{i}.csv" for i in (1, 2)]
+    assert all("rate_hz" in refused(path) for path in paths)
+    first, second = (read_markers(path, rate_hz=25.0, units="250 mm") for path in paths)
+    assert (first.n_frames, second.n_frames) == (1714, 1692)
+    assert first.names != second.names
+    assert set(first.names) == set(second.names)
+    for capture, share in ((first, 0.504), (second, 0.467)):
+        blank = np.isnan(capture.positions_mm).all(axis=(1, 2))
+        assert blank.mean() == pytest.approx(share, abs=6e-4)
+    rows = paths[1].read_text().splitlines()
+    header, row = rows[0].split(";"), rows[1000].split(";")
+    column = second.names.index("CL7")
+    expected = [250 * float(row[header.index(f"CL7_{a}")]) for a in "xyz"]
+    np.testing.assert_allclose(second.positions_mm[999, column], expected)
+    guessed = read_markers(paths[0], rate_hz=25.0)
+    assert any("no face" in note for note in reading_notes(guessed))
+
+
+def test_blendshape_coefficients_are_no_marker_positions(corpora):
+    for name in ("S88-001", "apfel", "facial"):
+        assert "blendshape" in refused(corpora / "livelink_csv" / f"{name}.csv")
+
+
+def test_articulography_gives_sensors_sound_and_labels(corpora):
+    path = corpora / "haskins_ieee_ema" / "F01_B01_S01_R01_N.mat"
+    capture, audio, labels = read_markers(path), read_audio(path), read_labels(path)
+    assert capture.names == ("TR", "TB", "TT", "UL", "LL", "ML", "JAW", "JAWL")
+    assert (capture.n_frames, capture.rate_hz) == (262, 100.0)
+    assert (len(audio.samples), audio.rate_hz) == (114881, 44100)
+    phones = labels.tier("phones")
+    assert (len(phones), len(labels.tier("words"))) == (29, 10)
+    lips = np.linalg.norm(capture.positions_mm[:, 3] - capture.positions_mm[:, 4], axis=1)
+    assert np.median(lips) == pytest.approx(27.0, abs=0.05)
+    for phone, least_mm in (("B", 17.7), ("M", 18.3), ("P", 19.6)):
+        span = next(i for i in phones if i.text == phone)
+        inside = (capture.times_s >= span.start_s) & (capture.times_s <= span.end_s)
+        assert lips[inside].min() == pytest.approx(least_mm, abs=0.1)
+
+
+def test_every_file_of_the_recordings_is_read_or_refused_in_one_sentence(corpora):
+    motion = [p for p in sorted(corpora.rglob("*")) if p.suffix.lower() in MOTION_READERS]
+    assert len(motion) >= 203 + 17
+    read = {}
+    for path in [p for p in motion if "grid_s1" not in p.parts]:
+        try:
+            read[path.name] = read_markers(path, rate_hz=None).n_frames
+        except InputError as error:
+            assert str(path) in str(error)  # noqa: PT017  either outcome is right
+            assert "\n" not in str(error)  # noqa: PT017
+            read[path.name] = 0
+    assert sum(n > 0 for n in read.values()) == 8 + 2 + 1
+    assert sum(n == 0 for n in read.values()) == 1 + 2 + 3

@@ -1,0 +1,45 @@
+"""What a corpus lacks, and what can be done without: for the report of ``corpus-tools check``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from corpus_tools.core import Capture, CorpusError
+from corpus_tools.io import CorpusDescription, parsed_axes
+
+__all__ = ["axes_advice", "what_is_lacking"]
+
+_AS_THEY_ARE = "x,y,z"
+
+
+def axes_advice(description: CorpusDescription, captures: Sequence[Capture]) -> list[str]:
+    """Return the line for corpus.toml when the motion files say that another axis than y is up."""
+    steps = [dict(c.history[0].settings) for c in captures if c.history and c.history[0].name == "read"]
+    said = {(s["right"], s["up"]) for s in steps if "right" in s and "up" in s}
+    if description.marker_axes != _AS_THEY_ARE or len(said) != 1:
+        return []
+    right, up = said.pop()
+    for out in ("x", "y", "z", "-x", "-y", "-z"):
+        axes = f"{right},{up},{out}"
+        try:
+            parsed_axes(axes, "")  # only the one that is left, with the sign that mirrors nothing, is right
+        except CorpusError:
+            continue
+        return [] if axes == _AS_THEY_ARE else [f'marker_axes = "{axes}"']
+    return []
+
+
+def what_is_lacking(description: CorpusDescription) -> list[str]:
+    """Say what a corpus without sound or labels can do, and how to give it the rest."""
+    told = []
+    if not description.labels:
+        told.append(
+            "No labels: its motion can be checked, but nothing can be synthesised from it; when there are "
+            f"TextGrids with phones, name their pattern as 'labels' in '{description.file}'."
+        )
+    if not description.audio:
+        told.append(
+            "No sound: what is synthesised from it is silent; when there is any, name its pattern as 'audio' "
+            f"in '{description.file}'."
+        )
+    return told
