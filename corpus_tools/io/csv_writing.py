@@ -20,9 +20,11 @@ def _cell(value: float) -> str:
 
 def _write(path: str | Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     """Write a table; the header is quoted where a name could be taken for several cells."""
-    quoting = csv.QUOTE_ALL if any(";" in cell for cell in header) else csv.QUOTE_MINIMAL
+    ambiguous = any(";" in cell for cell in header)
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as stream:
-        csv.writer(stream, lineterminator="\n", quoting=quoting).writerow(header)
+        csv.writer(
+            stream, lineterminator="\n", quoting=csv.QUOTE_ALL if ambiguous else csv.QUOTE_MINIMAL
+        ).writerow(header)
         csv.writer(stream, lineterminator="\n").writerows(rows)
 
 

@@ -185,6 +185,12 @@ WRONG = {
     "bad number": ({"settings": {"audio_offset_s": "late"}}, "audio_offset_s", "seconds"),
     "nan": ({"settings": {"audio_offset_s": "nan"}}, "audio_offset_s", "finite"),
     "bad unit": ({"settings": {"marker_units": "feet"}}, "marker_units", "mm, cm"),
+    "no axes": ({"settings": {"marker_axes": "x,y"}}, "marker_axes", "x,z,-y"),
+    "an axis twice": ({"settings": {"marker_axes": "x,y,y"}}, "marker_axes", "each axis once"),
+    "a mirror": ({"settings": {"marker_axes": "x,z,y"}}, "marker_axes", "mirrors"),
+    "bad rate": ({"settings": {"rate_hz": "fast"}}, "rate_hz", "Hz"),
+    "rate below nought": ({"settings": {"rate_hz": "-1"}}, "rate_hz", "no frame rate"),
+    "bad multiple": ({"settings": {"marker_units": "0 mm"}}, "marker_units", "250 mm"),
     "empty phones": ({"settings": {"phones": ""}}, "phones", "arpabet"),
 }
 
@@ -216,3 +222,24 @@ def test_a_file_in_the_way_is_named(data, place):
     with pytest.raises((OutputError, InputError), match=r"notes\.txt"):
         init(place)
     assert (data / "m/notes.txt").read_bytes() == b""
+
+
+def test_unit_rate_and_axes_of_the_corpus_reach_every_format(tmp_path):
+    rows = ["Frame,a_x,a_y,a_z", "1,1,2,3", "2,4,5,6"]
+    (tmp_path / "a.CSV").write_text("\n".join(rows) + "\n")
+    settings = {"marker_units": "2 cm", "rate_hz": "50", "marker_axes": "y, z, x"}
+    description = init_corpus(tmp_path / "w", motion=str(tmp_path / "{id}.CSV"), settings=settings)
+    assert description == read_description(tmp_path / "w")
+    (files,) = find_recordings(description)
+    capture = load_capture(description, files)
+    np.testing.assert_allclose(capture.positions_mm[:, 0], [[40, 60, 20], [100, 120, 80]])
+    assert capture.rate_hz == 50.0
+
+
+def test_links_to_recordings_are_followed(data):
+    (data / "linked").symlink_to(data / "m")
+    (data / "one").mkdir()
+    (data / "one" / "x.npz").symlink_to(data / "m" / "a1.npz")
+    (data / "one" / "gone.npz").symlink_to(data / "nowhere.npz")
+    assert [r.id for r in find_recordings(init("w1", motion="linked/{id}.npz"))] == ["a1", "b1", "c1"]
+    assert [r.id for r in find_recordings(init("w2", motion="one/{id}.npz"))] == ["x"]
