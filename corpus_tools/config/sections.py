@@ -124,6 +124,10 @@ class AlignmentSettings(Section):
 class BlendSettings(Section):
     """Paper A section 5.1.3, eq. (2): the overlap and its weighting function g(u)."""
 
+    mode: Literal["crossfade", "inertial"] = Field(
+        "crossfade",
+        description="Blend by g(u) over an overlap, or (beyond the paper) let the offset of a join die away.",
+    )
     weighting: str = Field("smootherstep", description="g(u), by name.")
     shape: float = Field(0.0, ge=-1, le=1, description="Moves the crossover of g(u): early -1 .. late +1.")
     curve_weights: tuple[Annotated[float, Field(ge=0, le=1e6)], ...] = Field(
@@ -136,6 +140,9 @@ class BlendSettings(Section):
     overlap_s: float = Field(0.12, ge=0, le=0.5, description="Longest overlap, s.")
     fraction: float = Field(
         0.5, gt=0, le=1, description="Rule 'paper': share of the smallest phone interval."
+    )
+    inertial_s: float = Field(
+        0.12, gt=0, le=0.3, description="Mode 'inertial': time in which the offset dies away on a side, s."
     )
 
     @field_validator("curve_weights")

@@ -18,8 +18,10 @@ class Join:
     """One join between two fragments (columns of ``joins.csv``).
 
     The gaps are rms over markers of the difference of the two aligned fragments at `time_s`, before blending:
-    position (mm), velocity (mm/s), acceleration (mm/s2). `natural_percentile` says where the blended peak
-    acceleration around the join stands in the natural distribution of the corpus, 0-100; NaN when unknown.
+    position (mm), velocity (mm/s), acceleration (mm/s2). `overlap_s` is the time over which the join is
+    spread: the cross-fade, or both decays of an inertial join. `natural_percentile` says where the blended
+    peak acceleration around the join stands in the natural distribution of the corpus, 0-100; NaN when
+    unknown.
     """
 
     index: int

@@ -7,6 +7,7 @@ from corpus_tools.synthesis.blending import blend_pieces, blend_weights, render_
 from corpus_tools.synthesis.closure import close_lips, closure_direction
 from corpus_tools.synthesis.effect import EffectCurve, effect_curves, narrowed, peak_ratios
 from corpus_tools.synthesis.greedy import greedy_as_printed, select_greedy
+from corpus_tools.synthesis.inertial import InertialMotion, join_inertially
 from corpus_tools.synthesis.joins import (
     NaturalDistribution,
     join_gaps,
@@ -29,6 +30,7 @@ __all__ = [
     "WEIGHTINGS",
     "AlignedPieces",
     "EffectCurve",
+    "InertialMotion",
     "JoinFeatures",
     "NaturalDistribution",
     "PhoneClasses",
@@ -53,6 +55,7 @@ __all__ = [
     "greedy_as_printed",
     "join_features",
     "join_gaps",
+    "join_inertially",
     "narrowed",
     "natural_distribution",
     "natural_percentiles",

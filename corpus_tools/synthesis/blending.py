@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
-from corpus_tools.core import FloatArray, Fragment, Selection, Trajectory, Utterance, step
+from corpus_tools.core import FloatArray, Fragment, InputError, Selection, Trajectory, Utterance, step
 from corpus_tools.synthesis.alignment import WarpKind
+from corpus_tools.synthesis.inertial import join_inertially
 from corpus_tools.synthesis.joins import NaturalDistribution, join_gaps, natural_percentiles
 from corpus_tools.synthesis.overlap import OverlapRule, overlap_lengths
 from corpus_tools.synthesis.pieces import MARGIN_S, AlignedPieces, Resampling, align_fragments
@@ -16,7 +19,9 @@ from corpus_tools.synthesis.usercurve import DEFAULT_CURVE
 from corpus_tools.synthesis.weighting import Weighting
 from corpus_tools.synthesis.weighting import weighting as weighting_function
 
-__all__ = ["blend_pieces", "blend_weights", "render_selection"]
+__all__ = ["BlendMode", "blend_pieces", "blend_weights", "render_selection"]
+
+BlendMode = Literal["crossfade", "inertial"]
 
 
 def blend_weights(
@@ -45,15 +50,33 @@ def blend_weights(
     return fading[:-1] - fading[1:]
 
 
+def _cross_fade(
+    aligned: AlignedPieces, overlaps_s: FloatArray, g: Weighting
+) -> tuple[FloatArray, npt.NDArray[np.uint8]]:
+    """Return the blended motion (n_frames, n_markers, 3) and the flags of all that has a say in it."""
+    weights = blend_weights(aligned.times_s, aligned.join_times_s, overlaps_s, g)
+    n_frames, n_markers = len(aligned.times_s), len(aligned.names)
+    values = np.zeros((n_frames, n_markers, 3))
+    flags = np.zeros((n_frames, n_markers), np.uint8)
+    for piece, weight in zip(aligned.pieces, weights, strict=True):
+        span = slice(piece.start, piece.stop)
+        share = weight[span]
+        values[span] += share[:, None, None] * piece.motion_mm
+        flags[span] |= np.where(share[:, None] > 0, piece.flags, 0).astype(np.uint8)
+    return values, flags
+
+
 def blend_pieces(
     aligned: AlignedPieces,
     *,
+    mode: BlendMode = "crossfade",
     weighting: str = "smootherstep",
     shape: float = 0.0,
     curve_weights: Sequence[float] = DEFAULT_CURVE,
     rule: OverlapRule = "shared-phone",
     overlap_s: float = 0.12,
     fraction: float = 0.5,
+    inertial_s: float = 0.12,
     natural: NaturalDistribution | None = None,
 ) -> Trajectory:
     """Blend aligned pieces at their joins.
@@ -61,6 +84,9 @@ def blend_pieces(
     Parameters
     ----------
     aligned : AlignedPieces
+    mode : {"crossfade", "inertial"}
+        "crossfade": eq. (2) of paper A, for which everything below but `inertial_s` is. "inertial": as of
+        :func:`~corpus_tools.synthesis.inertial.join_inertially`, beyond the paper.
     weighting : str
         g(u) by name.
     shape : float
@@ -70,40 +96,41 @@ def blend_pieces(
     rule, overlap_s, fraction
         As of :func:`~corpus_tools.synthesis.overlap.overlap_lengths`; an overlap is never longer than the
         motion that aligned pieces keep around their joins (2 :data:`MARGIN_S`).
+    inertial_s : float
+        How long the offset of an inertial join takes to die away on either side, s.
     natural : NaturalDistribution, optional
         Places the peak acceleration of each join among natural ones.
 
     Returns
     -------
     Trajectory
-        With one :class:`~corpus_tools.core.Join` per join.
+        With one :class:`~corpus_tools.core.Join` per join. An inertial one says in its history how far it
+        lies from the captured motion at most (deviation_mm, rms over markers).
 
     Raises
     ------
     InputError
-        There is no such g(u), or its shape or its weights are out of range.
+        There is no such mode or g(u), or a setting is out of range.
     """
-    g = weighting_function(weighting, shape, curve_weights)
-    phones = aligned.utterance.phones.intervals
-    longest = min(overlap_s, 2.0 * MARGIN_S)
-    overlaps = overlap_lengths(phones, aligned.join_phones, rule, longest, fraction)
-    weights = blend_weights(aligned.times_s, aligned.join_times_s, overlaps, g)
-    n_frames, n_markers = len(aligned.times_s), len(aligned.names)
-    values = np.zeros((n_frames, n_markers, 3))
-    flags = np.zeros((n_frames, n_markers), np.uint8)
-    for piece, weight in zip(aligned.pieces, weights, strict=True):
-        span = slice(piece.start, piece.stop)
-        share = weight[span]
-        values[span] += share[:, None, None] * piece.motion_mm
-        flags[span] |= np.where(share[:, None] > 0, piece.flags, 0).astype(np.uint8)
-    own = {"curve_weights": ",".join(f"{w:g}" for w in curve_weights)} if weighting == "user" else {}
-    done = step(
-        "blend", weighting=weighting, shape=shape, rule=rule, overlap_s=overlap_s, fraction=fraction, **own
-    )
+    settings: dict[str, Any] = {"mode": mode}
+    if mode == "crossfade":
+        settings |= {"weighting": weighting, "shape": shape, "rule": rule, "overlap_s": overlap_s}
+        settings |= {"fraction": fraction}
+        if weighting == "user":
+            settings["curve_weights"] = ",".join(f"{w:g}" for w in curve_weights)
+        longest = min(overlap_s, 2.0 * MARGIN_S)
+        phones = aligned.utterance.phones.intervals
+        overlaps = overlap_lengths(phones, aligned.join_phones, rule, longest, fraction)
+        values, flags = _cross_fade(aligned, overlaps, weighting_function(weighting, shape, curve_weights))
+    elif mode == "inertial":
+        moved = join_inertially(aligned, inertial_s)
+        values, flags, overlaps = moved.values_mm, moved.flags, moved.reach_s
+        settings |= {"inertial_s": inertial_s, "deviation_mm": round(float(moved.deviation_mm.max()), 4)}
+    else:
+        raise InputError(f"There is no blend mode '{mode}'. Known: crossfade, inertial.")
+    history = (step("align", **dict(aligned.settings)), step("blend", **settings))
     joins = join_gaps(aligned, overlaps)
-    result = Trajectory(
-        aligned.times_s, values, aligned.names, joins, flags, (step("align", **dict(aligned.settings)), done)
-    )
+    result = Trajectory(aligned.times_s, values, aligned.names, joins, flags, history)
     if natural is None or not joins:
         return result
     percentiles = natural_percentiles(result, natural)
@@ -118,17 +145,11 @@ def render_selection(
     *,
     names: Sequence[str],
     rate_hz: float = 120.0,
-    weighting: str = "smootherstep",
-    shape: float = 0.0,
-    curve_weights: Sequence[float] = DEFAULT_CURVE,
-    rule: OverlapRule = "shared-phone",
-    overlap_s: float = 0.12,
-    fraction: float = 0.5,
     warp: WarpKind = "linear",
     resampling: Resampling = "inverse",
     c: float = 0.2,
     silence: str = "SIL",
-    natural: NaturalDistribution | None = None,
+    **blend: Any,
 ) -> Trajectory:
     """Align, resample and blend in one call (paper A sections 5.1.2 and 5.1.3).
 
@@ -147,13 +168,4 @@ def render_selection(
         c=c,
         silence=silence,
     )
-    return blend_pieces(
-        aligned,
-        weighting=weighting,
-        shape=shape,
-        curve_weights=curve_weights,
-        rule=rule,
-        overlap_s=overlap_s,
-        fraction=fraction,
-        natural=natural,
-    )
+    return blend_pieces(aligned, **blend)

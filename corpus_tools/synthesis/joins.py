@@ -17,6 +17,7 @@ __all__ = [
     "join_gaps",
     "natural_distribution",
     "natural_percentiles",
+    "piece_state",
     "rms_acceleration",
 ]
 
@@ -115,7 +116,7 @@ def natural_percentiles(trajectory: Trajectory, natural: NaturalDistribution) ->
     return found
 
 
-def _state(piece: Piece, frame: int, rate_hz: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def piece_state(piece: Piece, frame: int, rate_hz: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return position, velocity and acceleration of a piece at a target frame, by central differences."""
     k = int(np.clip(frame - piece.start, 1, len(piece.motion_mm) - 2))
     before, here, after = piece.motion_mm[k - 1 : k + 2]
@@ -139,8 +140,8 @@ def join_gaps(aligned: AlignedPieces, overlaps_s: FloatArray) -> tuple[Join, ...
     for k, (left, right) in enumerate(zip(aligned.pieces[:-1], aligned.pieces[1:], strict=True)):
         shared = phones[left.last]
         frame = round(shared.centre_s * aligned.rate_hz)
-        here = _state(left, frame, aligned.rate_hz)
-        there = _state(right, frame, aligned.rate_hz)
+        here = piece_state(left, frame, aligned.rate_hz)
+        there = piece_state(right, frame, aligned.rate_hz)
         position, velocity, acceleration = (_rms(a - b) for a, b in zip(here, there, strict=True))
         joins.append(
             Join(

@@ -43,8 +43,19 @@ def aligned(grid):
     return made
 
 
-def peaks(grid, aligned, **blend):
-    """Return the mean over joins of the peak acceleration, as a ratio to the natural 95th percentile."""
+@pytest.fixture(scope="module")
+def best(grid):
+    """Return the aligned pieces of every sentence, held out, chosen by Viterbi."""
+    made = []
+    for name in grid.names:
+        target = grid.utterance(name)
+        selection = select_units(grid, target, Config(), exclude=(name,))
+        made.append(align_units(grid, target, selection, Config()))
+    return made
+
+
+def join_peaks(grid, aligned, **blend):
+    """Return the peak acceleration of every join, as a ratio to the natural 95th percentile."""
     found = []
     for pieces in aligned:
         trajectory = blend_pieces(pieces, **blend)
@@ -53,7 +64,12 @@ def peaks(grid, aligned, **blend):
         for join in trajectory.joins:
             found.append(acceleration[np.abs(trajectory.times_s - join.time_s) <= 0.06].max())
     assert len(found) > 30
-    return np.mean(found) / grid.natural.frames_p95_mm_s2
+    return np.array(found) / grid.natural.frames_p95_mm_s2
+
+
+def peaks(grid, aligned, **blend):
+    """Return the mean of :func:`join_peaks`."""
+    return join_peaks(grid, aligned, **blend).mean()
 
 
 def test_longer_overlaps_calm_the_joins_until_the_phone_is_full(grid, aligned):
@@ -84,6 +100,50 @@ def test_joins_are_ranked_among_natural_speech(grid, aligned):
     assert 1 < np.mean(gaps) < 5
 
 
+def test_inertial_joins_are_about_as_smooth_as_speech(grid, best):
+    """1.16 of the natural p95 with Viterbi, .46 to .64 of the cross-fade, were measured on other splits.
+
+    All sentences: where a phone of 140 ms speaks one of 30 ms, the acceleration (20 times the p95) is that of
+    the hurried fragment, which no join can mend, and one such sentence decides the mean of a small sample.
+    """
+    ratios = {mode: join_peaks(grid, best, mode=mode) for mode in ("crossfade", "inertial")}
+    assert np.mean(ratios["inertial"]) <= 1.25
+    assert np.mean(ratios["inertial"]) <= 0.65 * np.mean(ratios["crossfade"])
+    assert (ratios["inertial"] > 1).mean() <= 0.6 * (ratios["crossfade"] > 1).mean()
+
+
+def test_inertial_joins_stay_near_the_recording_and_lips_close_after_them(grid, best):
+    config = config_with(Config(), blend__mode="inertial")
+    largest = []
+    for pieces in best:
+        trajectory = blend_units(grid, pieces.utterance, pieces, config)
+        settings = {s.name: s.as_dict() for s in trajectory.history}
+        largest.append(settings["blend"]["deviation_mm"])
+        aperture = np.einsum("fmk,mk->f", trajectory.values_mm, grid.lips.functional)
+        for phone in pieces.utterance.phones:
+            if phone.text in grid.phones.bilabials:
+                inside = (trajectory.times_s >= phone.start_s) & (trajectory.times_s <= phone.end_s)
+                assert aperture[inside].min() <= grid.lips.target_mm + 0.05
+    assert 0.3 < np.median(largest) < 2
+
+
+def test_closing_the_lips_costs_no_accuracy(grid, best):
+    """Success as natural or .98, at most .5 % more error; 1.00 and less error were measured."""
+    found = {False: [], True: []}
+    for pieces in best[::2]:
+        capture = grid.recording(pieces.utterance.name).capture
+        phones = pieces.utterance.phones.intervals
+        speech = (pieces.times_s > phones[0].end_s) & (pieces.times_s < phones[-1].start_s)
+        curve = fit_uniform_rbf(capture.start_s, capture.rate_hz, capture.positions_mm)
+        truth = curve(pieces.times_s[speech])[:, grid.natural.columns]
+        for project, errors in found.items():
+            config = config_with(Config(), blend__mode="inertial", closure__project=project)
+            values = np.asarray(blend_units(grid, pieces.utterance, pieces, config).values_mm)
+            errors.append(((values[speech][:, grid.natural.columns] - truth) ** 2).sum(axis=2).ravel())
+    rmse = {project: np.sqrt(np.concatenate(errors).mean()) for project, errors in found.items()}
+    assert rmse[True] <= 1.005 * rmse[False]
+
+
 def test_nothing_doubtful_is_hidden_and_little_is_doubtful(aligned):
     doubtful = [(np.asarray(blend_pieces(p).flags) & 4 > 0).mean() for p in aligned]
     assert np.mean(doubtful) < 0.02
@@ -109,7 +169,7 @@ def test_lips_close_in_every_bilabial_and_are_never_pressed_through_each_other(g
     functional, closed = grid.lips.functional, 0
     for pieces in aligned:
         plain = blend_pieces(pieces)
-        trajectory = blend_units(grid, pieces.utterance, pieces, Config())
+        trajectory = blend_units(grid, pieces.utterance, pieces, config_with(Config(), rest__ease_s=0.0))
         before, after = (np.einsum("fmk,mk->f", t.values_mm, functional) for t in (plain, trajectory))
         for phone in pieces.utterance.phones:
             if phone.text in grid.phones.bilabials:

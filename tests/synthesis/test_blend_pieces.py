@@ -30,7 +30,12 @@ from tests.strategies.fragments import (
 modes = pytest.mark.parametrize("mode", ["inverse", "paper"])
 rules = st.sampled_from(["shared-phone", "paper"])
 blends = st.fixed_dictionaries(
-    {"weighting": st.sampled_from(list(WEIGHTINGS)), "shape": st.floats(-1, 1), "rule": rules}
+    {
+        "mode": st.sampled_from(["crossfade", "inertial"]),
+        "weighting": st.sampled_from(list(WEIGHTINGS)),
+        "shape": st.floats(-1, 1),
+        "rule": rules,
+    }
 )
 
 

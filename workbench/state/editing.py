@@ -17,6 +17,7 @@ __all__ = ["EDITABLE", "SETTINGS", "TARGETS", "Editing", "default_config"]
 
 SETTINGS = {
     "method": "selection__method",
+    "mode": "blend__mode",
     "weighting": "blend__weighting",
     "shape": "blend__shape",
     "curve_weights": "blend__curve_weights",
@@ -54,6 +55,7 @@ class Editing(param.Parameterized):
     text = param.String(default="", doc="Words that are spoken when the target is a text.")
     held_out = param.Boolean(default=True, doc="Keep that recording out of the inventory.")
     method = param.String(default="viterbi")
+    mode = param.Selector(default="crossfade", objects=["crossfade", "inertial"])
     weighting = param.String(default="smootherstep")
     shape = param.Number(default=0.0, bounds=(-1.0, 1.0))
     curve_weights = param.ClassSelector(class_=tuple, default=DEFAULT_CURVE, doc="Of the curve 'user'.")

@@ -37,6 +37,7 @@ def test_every_setting_reaches_the_config(opened):
     session = Session()
     values = {
         "method": "greedy",
+        "mode": "inertial",
         "weighting": "linear",
         "shape": 0.25,
         "curve_weights": (0.0, 0.0, 1.0, 3.0, 0.0, 0.0),
@@ -73,7 +74,9 @@ def test_g_of_u_changes_the_animation_and_runs_only_the_quick_stages(session, st
     assert again.animation is first.animation
 
 
-@pytest.mark.parametrize(("name", "value"), [("shape", 0.6), ("overlap_s", 0.04), ("rule", "paper")])
+@pytest.mark.parametrize(
+    ("name", "value"), [("shape", 0.6), ("overlap_s", 0.04), ("rule", "paper"), ("mode", "inertial")]
+)
 def test_every_blend_setting_moves_the_mouth(session, stages, name, value):
     first = stages.run(session.request())
     assert len(first.selection.chosen) > 1
