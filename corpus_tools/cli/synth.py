@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -25,6 +26,7 @@ from corpus_tools.pipeline import (
     synthesise,
     write_synthesis,
 )
+from corpus_tools.render import EXPORTERS, check_exports, export_all, export_names
 from corpus_tools.synthesis import StandIn, stand_ins
 
 __all__ = ["register"]
@@ -139,6 +141,12 @@ def synth(
     ] = None,
     fps: Annotated[float | None, typer.Option("--fps", help="Frames per second of the motion.")] = None,
     seed: Annotated[int | None, typer.Option("--seed", help="Seed of everything random.")] = None,
+    export: Annotated[
+        str | None, typer.Option("--export", help=f"Also write, by comma: {', '.join(EXPORTERS)}.")
+    ] = None,
+    film_fps: Annotated[
+        float | None, typer.Option("--film-fps", help="Pictures per second of the film (30).")
+    ] = None,
     include_self: Annotated[
         bool, typer.Option("--include-self", help="Let the utterance's own recording be used.")
     ] = False,
@@ -163,22 +171,35 @@ def synth(
             "deform__mesh": mesh,
             "alignment__rate_hz": fps,
             "output__seed": seed,
+            "film__rate_hz": film_fps,
         },
     )
     asked.check(settings)
+    exports = export_names(export)
     _check_out(out, corpus)
+    check_exports(exports, out)
     head_mesh = mesh_by_name_or_file(settings.deform.mesh)
     with progress_bar("opening the corpus") as progress:
-        opened = open_corpus(corpus, settings, lambda f, w: progress(0.8 * f, w))
+        share = 0.3 if exports else 0.95  # of the bar, for what comes before the exports
+        opened = open_corpus(corpus, settings, lambda f, w: progress(0.85 * share * f, w))
         target, request = asked.target(opened, settings)
         exclude = () if include_self or utterance is None else (utterance,)
-        progress(0.82, "binding the head")
+        progress(0.87 * share, "binding the head")
         head = prepare_head(opened, head_mesh, settings)
-        progress(0.88, "synthesising")
+        progress(0.93 * share, "synthesising")
         synthesis = _synthesise(opened, target, settings, head, exclude)
-        progress(0.95, "writing")
+        progress(share, "writing")
         request["held_out"] = list(exclude)
-        write_synthesis(out, synthesis, head, settings, corpus_provenance(opened), request)
+        extra = functools.partial(
+            export_all,
+            exports,
+            synthesis=synthesis,
+            head=head,
+            config=settings,
+            progress=lambda f, w: progress(share + (1 - share) * f, w),
+        )
+        provenance = corpus_provenance(opened)
+        write_synthesis(out, synthesis, head, settings, provenance, request, extra if exports else None)
     summary = _summary(synthesis, opened, out)
     _tell(summary, synthesis, opened)
     if json_:

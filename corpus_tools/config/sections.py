@@ -21,6 +21,7 @@ __all__ = [
     "CleaningSettings",
     "ClosureSettings",
     "DeformSettings",
+    "FilmSettings",
     "OutputSettings",
     "OverrideSettings",
     "RestSettings",
@@ -196,3 +197,15 @@ class OutputSettings(Section):
     """What synth writes."""
 
     seed: int = Field(0, ge=0, description="Seed of everything random.")
+
+
+@section("film")
+class FilmSettings(Section):
+    """Pictures of the head: the film, its frames, the strip of frames."""
+
+    rate_hz: float = Field(30.0, ge=1, le=240, description="Pictures per second of the film.")
+    width: int = Field(1280, ge=64, le=7680, multiple_of=2, description="Width, pixels.")
+    height: int = Field(720, ge=64, le=4320, multiple_of=2, description="Height, pixels.")
+    view: Literal["front", "three-quarter", "side"] = Field("front", description="Where the camera stands.")
+    zoom_mm: float = Field(0.0, ge=0, le=500, description="Height shown around the mouth; 0: the face.")
+    strip_frames: int = Field(6, ge=2, le=16, description="Poses in the strip of frames.")

@@ -6,7 +6,8 @@ import csv
 import datetime
 import json
 import platform
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -128,6 +129,7 @@ def write_synthesis(
     config: ConfigBase,
     provenance: Mapping[str, Any],
     request: Mapping[str, Any],
+    exports: Callable[[Path], Mapping[str, Any]] | None = None,
 ) -> Path:
     """Write every file of a synthesis.
 
@@ -141,6 +143,9 @@ def write_synthesis(
         Of the corpus, as of :func:`~corpus_tools.pipeline.provenance.corpus_provenance`.
     request : mapping
         What was asked for: utterance, labels, whether it was held out.
+    exports : callable, optional
+        ``exports(folder)`` adds files of its own to those that stand there already and returns, by name, what
+        is to be known of them; they are listed in the manifest with all others.
 
     Raises
     ------
@@ -154,7 +159,10 @@ def write_synthesis(
         write_wav(out / "speech.wav", utterance.audio or _silence(utterance.duration_s))
         write_textgrid(out / "labels.TextGrid", _labels_of(utterance))
         _write_joins(out / "joins.csv", synthesis.trajectory.joins)
-        files = {p.name: file_hash(p) for p in sorted(out.iterdir())}
+        clock = time.perf_counter()
+        facts = exports(out) if exports else {}
+        export_ms = {"export": 1000 * (time.perf_counter() - clock)} if exports else {}
+        files = {p.relative_to(out).as_posix(): file_hash(p) for p in sorted(out.rglob("*")) if p.is_file()}
         manifest = {
             "program": {
                 "name": "corpus-tools",
@@ -169,11 +177,12 @@ def write_synthesis(
             "selection": _selection_rows(synthesis.selection, utterance),
             "selection_cost": synthesis.selection.total_cost,
             "history": [s.as_dict() for s in synthesis.trajectory.history],
+            "exports": facts,
             "files": files,
         }
         _write_json(out / "manifest.json", manifest)
         run = {
-            "timings_ms": {k: round(v, 3) for k, v in synthesis.timings_ms.items()},
+            "timings_ms": {k: round(v, 3) for k, v in (synthesis.timings_ms | export_ms).items()},
             "host": platform.node(),
             "system": platform.platform(),
             "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),

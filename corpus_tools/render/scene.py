@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import io
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import pyvista as pv
 
 from corpus_tools.core import FloatArray, Mesh, MissingExtraError
-from corpus_tools.mesh import SkinRegion, skin_regions
 from corpus_tools.render.probe import apply_window, probe_offscreen
+from corpus_tools.render.surfaces import part_surface
 
-__all__ = ["PART_STYLES", "VIEWS", "part_surface", "scene", "snapshot"]
+if TYPE_CHECKING:
+    import pyvista as pv
+
+__all__ = ["PART_STYLES", "VIEWS", "scene", "snapshot"]
 
 PART_STYLES: dict[str, dict[str, Any]] = {
-    "skin": {"color": "#d9a78b", "ambient": 0.18, "diffuse": 0.82, "specular": 0.16, "specular_power": 14},
+    "skin": {"color": "#dcae96", "ambient": 0.34, "diffuse": 0.72, "specular": 0.12, "specular_power": 16},
     "eyes": {"color": "#f2efe9", "ambient": 0.35, "diffuse": 0.7, "specular": 0.5, "specular_power": 40},
     "upper_teeth": {"color": "#f4efe2", "ambient": 0.55, "diffuse": 0.5, "specular": 0.2},
     "lower_teeth": {"color": "#efe8d8", "ambient": 0.5, "diffuse": 0.5, "specular": 0.2},
@@ -24,37 +26,7 @@ PART_STYLES: dict[str, dict[str, Any]] = {
 }
 OTHER_STYLE: dict[str, Any] = {"color": "#c8c8c8", "ambient": 0.3, "diffuse": 0.7}
 VIEWS = {"front": (0.0, 0.0), "three-quarter": (35.0, 4.0), "side": (88.0, 0.0)}
-REGION_COLOURS = {
-    SkinRegion.FACE: (0.851, 0.655, 0.545),
-    SkinRegion.LIPS: (0.760, 0.475, 0.430),
-    SkinRegion.MOUTH: (0.330, 0.130, 0.125),
-}
-TEETH_COLOURS = {"upper_teeth": (0.97, 0.95, 0.90), "lower_teeth": (0.94, 0.91, 0.85)}
-TEETH_DEPTH_MM = 24.0
-IRIS_COLOUR = (0.33, 0.24, 0.16)
-SCLERA_COLOUR = (0.95, 0.93, 0.90)
 BACKGROUND = "#e9ecef"
-
-
-def part_surface(mesh: Mesh, part: str, vertices_mm: npt.ArrayLike | None = None) -> pv.PolyData:
-    """Return one part of the mesh as PolyData with smooth normals; `vertex` has the mesh's numbers."""
-    vertices = np.asarray(mesh.vertices_mm if vertices_mm is None else vertices_mm, np.float32)
-    faces = mesh.faces[mesh.part_mask(part)[mesh.faces].all(axis=1)]
-    used = np.unique(faces)
-    renumber = np.zeros(mesh.n_vertices, np.int64)
-    renumber[used] = np.arange(len(used))
-    surface = pv.PolyData.from_regular_faces(vertices[used], renumber[faces])
-    surface = surface.compute_normals(
-        cell_normals=False, split_vertices=False, consistent_normals=False, auto_orient_normals=False
-    )
-    surface.point_data["vertex"] = used
-    if part == "eyes":
-        surface.point_data["colour"] = _eye_colours(mesh.vertices_mm[used])
-    elif part in TEETH_COLOURS:
-        surface.point_data["colour"] = _teeth_colours(mesh.vertices_mm[used], TEETH_COLOURS[part])
-    elif part == "skin":
-        surface.point_data["colour"] = _skin_colours(mesh)[used]
-    return surface
 
 
 def scene(
@@ -87,6 +59,8 @@ def scene(
     MissingExtraError
         This machine cannot draw off-screen; the sentence names the package.
     """
+    import pyvista as pv
+
     status = probe_offscreen()
     if not status.ok:
         raise MissingExtraError(status.reason)
@@ -100,7 +74,8 @@ def scene(
         if "colour" in surface.point_data:
             style.pop("color")
             style |= {"scalars": "colour", "rgb": True}
-        plotter.add_mesh(surface, name=part, smooth_shading=True, show_scalar_bar=False, **style)
+        actor = plotter.add_mesh(surface, name=part, smooth_shading=False, show_scalar_bar=False, **style)
+        actor.prop.interpolation = "Phong"  # with the normals of the surface
     if markers and mesh.markers:
         points = vertices[list(mesh.markers.values())]
         plotter.add_points(
@@ -122,6 +97,8 @@ def snapshot(mesh: Mesh, vertices_mm: npt.ArrayLike | None = None, **options: An
 
 def _light_and_aim(plotter: pv.Plotter, mesh: Mesh, view: tuple[float, float], zoom_mm: float) -> None:
     """Put the camera before the face, from the rest pose so that it does not shake; three lights."""
+    import pyvista as pv
+
     centre, height = _frame(mesh, zoom_mm)
     around, above = np.radians(view)
     direction = np.array([np.sin(around) * np.cos(above), np.sin(above), np.cos(around) * np.cos(above)])
@@ -153,34 +130,6 @@ def _frame(mesh: Mesh, zoom_mm: float) -> tuple[FloatArray, float]:
         return 0.5 * (low + high) + [0.0, 0.08 * (high[1] - low[1]), 0.0], 1.6 * float(high[1] - low[1])
     low, high = mesh.vertices_mm.min(axis=0), mesh.vertices_mm.max(axis=0)
     return 0.5 * (low + high), 1.2 * float(high[1] - low[1])
-
-
-def _eye_colours(vertices: FloatArray) -> npt.NDArray[np.float32]:
-    """Return white of the eye, and an iris around the foremost point of either ball."""
-    colours = np.tile(np.array(SCLERA_COLOUR, np.float32), (len(vertices), 1))
-    for side in (vertices[:, 0] > 0, vertices[:, 0] <= 0):
-        if not side.any():
-            continue
-        ball = vertices[side]
-        centre = 0.5 * (ball.min(axis=0) + ball.max(axis=0))
-        radius = 0.5 * float(np.ptp(ball[:, 1]))
-        towards = (ball - centre) / max(radius, 1e-9)
-        iris = (towards[:, 2] > 0.5) & (np.hypot(towards[:, 0], towards[:, 1]) < 0.52)
-        colours[np.flatnonzero(side)[iris]] = IRIS_COLOUR
-    return colours
-
-
-def _teeth_colours(vertices: FloatArray, colour: tuple[float, float, float]) -> npt.NDArray[np.float32]:
-    """Return the colour of each tooth vertex: bright in front, in the shade of the cheeks further back."""
-    depth = (vertices[:, 2].max() - vertices[:, 2]) / TEETH_DEPTH_MM
-    light = np.clip(1.15 - depth, 0.18, 1.0)
-    return np.asarray(light[:, None] ** np.array([1.0, 1.2, 1.3]) * np.array(colour), np.float32)
-
-
-def _skin_colours(mesh: Mesh) -> npt.NDArray[np.float32]:
-    """Return the colour of each vertex by region of the skin, (n_vertices, 3)."""
-    table = np.array([REGION_COLOURS[region] for region in SkinRegion], np.float32)
-    return np.asarray(table[skin_regions(mesh)])
 
 
 def _png(picture: npt.NDArray[np.uint8]) -> bytes:

@@ -9,7 +9,7 @@ from PIL import Image
 
 from corpus_tools.core import Mesh
 from corpus_tools.mesh import bundled_head, bundled_morph_mm
-from corpus_tools.render import VIEWS, part_surface, probe_offscreen, scene, snapshot
+from corpus_tools.render import VIEWS, drawn_part, part_surface, probe_offscreen, scene, snapshot
 
 
 @pytest.fixture(scope="module")
@@ -81,9 +81,52 @@ def test_surfaces_keep_the_vertex_numbers_of_the_mesh(head):
     for part in head.part_names:
         surface = part_surface(head, part)
         vertex = surface.point_data["vertex"]
-        np.testing.assert_allclose(surface.points, head.vertices_mm[vertex], atol=1e-3)
-        seen.append(vertex)
+        away = np.linalg.norm(surface.points - head.vertices_mm[vertex], axis=1)
+        own = away < 1e-3
+        assert set(vertex[own]) == set(np.flatnonzero(head.part_mask(part)))
+        assert own.all() == (part in ("skin", "tongue"))
+        assert away.max() < 12.0  # what lies between belongs to an end of its edge
+        seen.append(np.unique(vertex))
     assert sorted(np.concatenate(seen).tolist()) == list(range(head.n_vertices))
+
+
+@pytest.mark.parametrize("part", ["skin", "eyes", "upper_teeth", "tongue"])
+def test_drawn_parts_follow_the_mesh(head, part):
+    drawn = drawn_part(head, part)
+    turn = np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]])
+    shift = np.array([3.0, -2.0, 1.0])
+    moved = drawn.points_mm(head.vertices_mm + shift)
+    np.testing.assert_allclose(moved, drawn.points_mm(head.vertices_mm) + shift, atol=1e-9)
+    points = drawn.points_mm(head.vertices_mm)
+    normals = drawn.normals(points)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-9)
+    np.testing.assert_allclose(drawn.normals(points @ turn.T), normals @ turn.T, atol=1e-9)
+
+
+def test_eyeballs_are_round_with_one_iris_each(head):
+    drawn = drawn_part(head, "eyes")
+    points = drawn.points_mm(head.vertices_mm)
+    assert drawn.colours is not None
+    for side in (points[:, 0] > 0, points[:, 0] < 0):
+        ball = points[side]
+        centre = 0.5 * (ball.min(axis=0) + ball.max(axis=0))
+        radius = np.linalg.norm(ball - centre, axis=1)
+        assert np.ptp(radius) < 0.05
+        dark = ball[drawn.colours[side].max(axis=1) < 0.1] - centre
+        assert len(dark) > 3
+        assert (np.hypot(dark[:, 0], dark[:, 1]) < 3).all()
+        assert (dark[:, 2] > 10).all()
+
+
+def test_teeth_are_told_apart(head):
+    """Along the arch the brightness falls at every gap: two incisors and more on either side."""
+    drawn = drawn_part(head, "upper_teeth")
+    points, shade = drawn.points_mm(head.vertices_mm), drawn.colours[:, 0]
+    front = points[:, 2] > points[:, 2].max() - 12
+    arc = np.round(points[front, 0])
+    mean = np.array([shade[front][arc == x].mean() for x in np.unique(arc)])
+    dips = (mean[1:-1] < mean[:-2] - 0.02) & (mean[1:-1] < mean[2:] - 0.02)
+    assert dips.sum() >= 3
 
 
 def test_a_plain_mesh_without_markers_is_drawn_too():

@@ -1,0 +1,120 @@
+"""What ``synth --export`` can write beside its own files, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from corpus_tools.config import ConfigBase
+from corpus_tools.core import MissingExtraError, OutputError, Registry
+from corpus_tools.pipeline import Head, Progress, Synthesis
+from corpus_tools.render.encoder import ffmpeg_path
+from corpus_tools.render.film import write_film, write_frames
+from corpus_tools.render.probe import probe_offscreen
+from corpus_tools.render.strip import write_strip
+
+__all__ = ["EXPORTERS", "Exporter", "check_exports", "export_all", "export_names"]
+
+
+@dataclass(frozen=True, slots=True)
+class Exporter:
+    """One kind of file that a synthesis can be written as.
+
+    Attributes
+    ----------
+    summary : str
+        One sentence for ``--help`` and lists.
+    write : callable
+        ``write(folder, synthesis, head, config, progress) -> facts``: adds its files to a folder in which
+        ``speech.wav`` and the others stand already; what it returns goes into the manifest.
+    check : callable
+        Raises before any work what would keep it from working here.
+    folder : str
+        Name of the folder that it makes; empty when it writes files only.
+    """
+
+    summary: str
+    write: Callable[[Path, Synthesis, Head, ConfigBase, Progress], dict[str, Any]]
+    check: Callable[[], object] = lambda: None
+    folder: str = ""
+
+
+def _can_draw() -> None:
+    status = probe_offscreen()
+    if not status.ok:
+        raise MissingExtraError(status.reason)
+
+
+def _can_film() -> None:
+    ffmpeg_path()
+    _can_draw()
+
+
+EXPORTERS: Registry[Exporter] = Registry("export")
+EXPORTERS.add("mp4", Exporter("The head speaking, with its sound: film.mp4.", write_film, _can_film))
+EXPORTERS.add("frames", Exporter("The pictures of the film as PNG files.", write_frames, _can_draw, "frames"))
+EXPORTERS.add(
+    "strip",
+    Exporter(
+        "Poses across the utterance with the paths of lips and jaw: strip.svg, .png.", write_strip, _can_draw
+    ),
+)
+
+
+def export_names(given: str | None) -> tuple[str, ...]:
+    """Return the names in a list such as "mp4,frames", each once, in the order given.
+
+    Raises
+    ------
+    InputError
+        One of them is unknown; the sentence lists those that are there.
+    """
+    names = [n.strip() for n in (given or "").split(",") if n.strip()]
+    for name in names:
+        EXPORTERS[name]
+    return tuple(dict.fromkeys(names))
+
+
+def check_exports(names: Iterable[str], out: Path) -> None:
+    """Raise what would keep exports from working, before anything is computed.
+
+    Raises
+    ------
+    MissingExtraError
+        An extra or a system package is missing; the sentence names it.
+    OutputError
+        A folder that would be made is there already: what lies in it is not replaced.
+    """
+    for name in names:
+        exporter = EXPORTERS[name]
+        exporter.check()
+        if exporter.folder and (out / exporter.folder).exists():
+            raise OutputError(
+                f"'{out / exporter.folder}' is there already, and what lies in it is not replaced; "
+                f"remove it, or choose another folder for the export '{name}'."
+            )
+
+
+def export_all(
+    names: Iterable[str],
+    folder: Path,
+    synthesis: Synthesis,
+    head: Head,
+    config: ConfigBase,
+    progress: Progress = lambda fraction, what: None,
+) -> dict[str, Any]:
+    """Write the exports into a folder one after the other.
+
+    Returns
+    -------
+    dict
+        By name, what each says of its files.
+    """
+    wanted = list(names)
+
+    def part(index: int) -> Progress:
+        return lambda fraction, what: progress((index + fraction) / len(wanted), what)
+
+    return {n: EXPORTERS[n].write(folder, synthesis, head, config, part(i)) for i, n in enumerate(wanted)}

@@ -1,0 +1,136 @@
+"""Exports by name: each writes what the manifest lists, twice the same; mistakes are told before the work."""
+
+import hashlib
+import json
+import sys
+
+import pytest
+
+from corpus_tools.cli.common import guarded
+from corpus_tools.cli.main import app
+from corpus_tools.config import Config, config_with
+from corpus_tools.core import InputError
+from corpus_tools.pipeline import prepare_head, synthesise, write_synthesis
+from corpus_tools.render import EXPORTERS, export_all, export_names, probe, probe_offscreen
+
+SMALL = config_with(Config(), film__width=128, film__height=96, film__rate_hz=5.0, film__strip_frames=3)
+
+
+@pytest.fixture(scope="module")
+def made(opened_corpus):
+    status = probe_offscreen()
+    if not status.ok:
+        pytest.skip(status.reason)
+    head = prepare_head(opened_corpus, "base", SMALL)
+    target = min((r.utterance for r in opened_corpus.recordings), key=lambda u: u.duration_s)
+    return synthesise(opened_corpus, target, SMALL, head, (target.name,)), head
+
+
+def write(folder, made, names):
+    synthesis, head = made
+    seen = []
+
+    def exports(out):
+        return export_all(names, out, synthesis, head, SMALL, lambda f, w: seen.append(f))
+
+    write_synthesis(folder, synthesis, head, SMALL, {}, {}, exports)
+    return seen
+
+
+@pytest.mark.parametrize("name", list(EXPORTERS))
+def test_every_export_is_listed_and_twice_the_same(made, tmp_path, name):
+    plain = {"motion.npz", "mesh.npz", "speech.wav", "labels.TextGrid", "joins.csv"}
+    found = []
+    for run in ("a", "b"):
+        shares = write(tmp_path / run, made, [name])
+        manifest = json.loads((tmp_path / run / "manifest.json").read_text())
+        assert set(manifest["exports"]) == {name}
+        assert (tmp_path / run / manifest["exports"][name]["file"]).exists()
+        assert json.loads((tmp_path / run / "run.json").read_text())["timings_ms"]["export"] > 0
+        assert all(0 <= share <= 1 for share in shares)
+        assert shares == sorted(shares)
+        files = {p.relative_to(tmp_path / run).as_posix() for p in (tmp_path / run).rglob("*") if p.is_file()}
+        assert files - {"manifest.json", "run.json"} == set(manifest["files"])
+        assert set(manifest["files"]) > plain
+        for file, value in manifest["files"].items():
+            assert hashlib.sha256((tmp_path / run / file).read_bytes()).hexdigest() == value
+        found.append(manifest["files"])
+    assert found[0] == found[1]
+    assert EXPORTERS[name].summary.endswith(".")
+
+
+def test_stopped_in_the_middle_nothing_remains(made, tmp_path):
+    synthesis, head = made
+
+    def stop(fraction, what):
+        if fraction > 0.2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_synthesis(
+            tmp_path / "o",
+            synthesis,
+            head,
+            SMALL,
+            {},
+            {},
+            lambda out: export_all(["mp4"], out, synthesis, head, SMALL, stop),
+        )
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_names_are_a_list_and_unknown_ones_are_refused_with_the_known():
+    assert export_names("mp4, frames,mp4,") == ("mp4", "frames")
+    assert export_names(None) == ()
+    with pytest.raises(InputError, match=r"export called 'mp5'; did you mean 'mp4'\?.*mp4.*frames"):
+        export_names("frames,mp5")
+
+
+def synth(capsys, *args):
+    code = guarded(lambda: app([str(a) for a in ("synth", *args)], standalone_mode=True))
+    return code, capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("word", "args"),
+    [
+        ("Known: mp4, frames", ["--export", "hologram"]),
+        ("film.rate_hz", ["--export", "mp4", "--film-fps", "0"]),
+        ("is there already", ["--export", "frames"]),
+    ],
+)
+def test_a_mistake_is_told_before_the_work(capsys, simulated_corpus, tmp_path, word, args):
+    (tmp_path / "o/frames").mkdir(parents=True)
+    code, error = synth(capsys, simulated_corpus, "--utterance", "x", "--out", tmp_path / "o", *args)
+    assert code == 2
+    assert word in error
+    assert len(error.splitlines()) == 1
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["frames", "o"]
+
+
+def test_a_missing_extra_and_a_machine_that_cannot_draw_are_told_before_the_work(
+    capsys, simulated_corpus, tmp_path, monkeypatch
+):
+    base = (simulated_corpus, "--utterance", "x", "--out", tmp_path / "o", "--export")
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    code, error = synth(capsys, *base, "mp4")
+    assert (code, "extra 'video'" in error) == (2, True)
+    probe_offscreen.cache_clear()
+    monkeypatch.setattr(probe, "DRAW", "import os; os.abort()")
+    code, error = synth(capsys, *base, "frames")
+    probe_offscreen.cache_clear()
+    assert (code, "libegl1" in error) == (2, True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_films(capsys, opened_corpus, simulated_corpus, tmp_path):
+    config = tmp_path / "small.toml"
+    config.write_text("schema = 1\n[film]\nwidth = 64\nheight = 64\n")
+    name = min((r.utterance for r in opened_corpus.recordings), key=lambda u: u.duration_s).name
+    args = ("--utterance", name, "--config", config, "--export", "mp4", "--film-fps", "4")
+    code, error = synth(capsys, simulated_corpus, *args, "--out", tmp_path / "o")
+    assert (code, error) == (0, "")
+    facts = json.loads((tmp_path / "o/manifest.json").read_text())
+    assert facts["exports"]["mp4"]["rate_hz"] == 4.0
+    assert facts["config"]["film"]["width"] == 64
+    assert (tmp_path / "o/film.mp4").stat().st_size > 1000
