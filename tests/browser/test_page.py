@@ -1,12 +1,13 @@
 """The first page in a real browser: a sentence moves the head, g(u) moves pixels, tabs are independent."""
 
 import re
+import shlex
 
 import pytest
 
 from corpus_tools.config import load_config
 from corpus_tools.demo import simulate_corpus
-from workbench.actions import options_shown
+from workbench.actions import options_shown, replay_command
 from workbench.apps.serving import Options, Workbench, free_port
 
 
@@ -302,3 +303,46 @@ def test_two_settings_are_compared_and_the_history_goes_back(browser_page, serve
 
 def transport(tab):
     return tab.locator(".vsw-transport").first
+
+
+def test_a_typed_sentence_is_spoken_and_one_without_words_is_refused_in_its_place(browser_page, served):
+    session = drawn(browser_page, served)
+    browser_page.get_by_role("button", name="Text", exact=True).click()
+    browser_page.get_by_text("Type a sentence above").wait_for()
+    field = browser_page.get_by_placeholder("Type a sentence")
+    field.fill("the time is half past nine")
+    field.press("Enter")
+    until(browser_page, lambda: session.result.request.text == "the time is half past nine")
+    labels = session.result.utterance.labels
+    until(
+        browser_page,
+        lambda: lane(browser_page).evaluate("c => c.vsw.state.score.phones.length") == len(labels),
+    )
+    assert "--text=the time is half past nine" in shlex.split(replay_command(session, "x.toml"))
+    field.fill("?!")
+    field.press("Enter")
+    browser_page.locator(".fragments .notice.err").wait_for()
+    assert session.result.utterance.labels == labels
+
+
+def test_a_dragged_handle_makes_an_own_curve_and_keys_move_it(browser_page, served):
+    session = drawn(browser_page, served)
+    canvas = browser_page.locator(".vsw-curve canvas")
+    place = """c => {
+      const [x0, y0, x1, y1] = c.vsw.box();
+      const [u, g] = c.vsw.handles.points[2];
+      return [x0 + u * (x1 - x0), y1 - g * (y1 - y0)];
+    }"""
+    box, (x, y) = canvas.bounding_box(), canvas.evaluate(place)
+    browser_page.mouse.move(box["x"] + x, box["y"] + y)
+    browser_page.mouse.down()
+    for step in range(1, 6):
+        browser_page.mouse.move(box["x"] + x + 4 * step, box["y"] + y - 4 * step)
+    browser_page.mouse.up()
+    until(browser_page, lambda: session.weighting == "user")
+    settled(browser_page, session)
+    dragged = session.curve_weights
+    canvas.press("ArrowUp")
+    until(browser_page, lambda: session.curve_weights != dragged)
+    browser_page.keyboard.press("v")
+    browser_page.locator(".slot.curves .bk-Canvas, .slot.curves canvas").first.wait_for()

@@ -44,6 +44,9 @@ class Desk:
             deliver, session.accept, self._refused, idle=lambda: session.param.update(working=False)
         )
         self._effects: LatestJob[Effects] = LatestJob(deliver, self._measured, lambda number, sentence: None)
+        self._recordings: LatestJob[Result | None] = LatestJob(
+            deliver, self._found_recorded, lambda number, sentence: None
+        )
         self._others: LatestJob[Result] = LatestJob(deliver, self._compared, lambda number, sentence: None)
         self._exports: LatestJob[Path] = LatestJob(deliver, self._exported, self._not_exported)
         self._on_export: Callable[[str, str], None] = lambda kind, text: None
@@ -90,7 +93,14 @@ class Desk:
 
     def close(self) -> None:
         """End all work; the tab is gone."""
-        for jobs in (self._opening, self._results, self._effects, self._others, self._exports):
+        for jobs in (
+            self._opening,
+            self._results,
+            self._effects,
+            self._recordings,
+            self._others,
+            self._exports,
+        ):
             jobs.close()
 
     def _progress(self, number: int, fraction: float, what: str) -> None:
@@ -130,8 +140,11 @@ class Desk:
         """Measure what the plots show of a result, and compute setting A where it is another one."""
         session, result = self.session, self.session.result
         if result is None:
-            session.param.update(effects=None, other=None)
+            session.param.update(effects=None, other=None, recorded=None)
             return
+        held = session.recorded
+        if held is None or held.head is not result.head or not held.request.same_target(result.request):
+            self._recordings.submit(lambda job: self.stages.recorded(result), cancel_running=True)
         if session.effects is None or not session.effects.fits(result):
             self._effects.submit(lambda job: compute_effects(result), cancel_running=True)
         wanted = session.request_of_a()
@@ -144,6 +157,11 @@ class Desk:
     def _measured(self, number: int, effects: Effects) -> None:
         if self.session.result is not None and effects.fits(self.session.result):
             self.session.effects = effects
+
+    def _found_recorded(self, number: int, recorded: Result | None) -> None:
+        result = self.session.result
+        if recorded is None or (result is not None and recorded.request.same_target(result.request)):
+            self.session.recorded = recorded
 
     def _compared(self, number: int, other: Result) -> None:
         wanted = self.session.request_of_a()

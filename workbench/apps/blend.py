@@ -186,6 +186,7 @@ class BlendPage:
             "redo": session.redo,
             "export": self.export.submit,
             "theme": self.bar.toggle_theme,
+            "view": self.board.switch_view,
             "cancel": self.desk.cancel,
         }
         if action in commands:

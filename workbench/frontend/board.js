@@ -55,6 +55,45 @@ function sides(model) {
   return group;
 }
 
+/** The recording on the same head, small, at the same time. */
+function inset(model) {
+  const box = document.createElement("figure");
+  box.className = "over inset";
+  const caption = document.createElement("figcaption");
+  caption.textContent = "recorded, same time";
+  box.append(slot(model, "inset"), caption);
+  const draw = () => box.classList.toggle("gone", !model.inset_shown);
+  model.on("inset_shown", draw);
+  draw();
+  return box;
+}
+
+/** Lane | Trajectories: what the lower card shows. */
+function views(model) {
+  const group = document.createElement("div");
+  group.className = "switch";
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", "Lower card");
+  for (const [id, label] of [
+    ["lane", "Lane"],
+    ["curves", "Trajectories"],
+  ]) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = label;
+    button.dataset.id = id;
+    button.title = "Lane or trajectories (V)";
+    button.onclick = () => model.shown !== id && model.send_msg({ type: "action", id: "view" });
+    group.append(button);
+  }
+  const draw = () => {
+    for (const b of group.children) b.setAttribute("aria-pressed", String(b.dataset.id === model.shown));
+  };
+  model.on("shown", draw);
+  draw();
+  return group;
+}
+
 /** Progress of a corpus that is being made: what, how far, how long; and how to stop it. */
 function progress(model) {
   const box = document.createElement("div");
@@ -89,7 +128,7 @@ export function renderBoard({ model, el }) {
   face.card.append(slot(model, "face"));
   const tag = document.createElement("div");
   tag.className = "tag";
-  face.card.append(tag, sides(model));
+  face.card.append(tag, sides(model), inset(model));
 
   const curve = section("weighting", "g(u) at the joins");
   curve.card.append(slot(model, "presets"), slot(model, "plot"), slot(model, "sliders"));
@@ -99,14 +138,14 @@ export function renderBoard({ model, el }) {
   sub.className = "sub";
   const chip = document.createElement("span");
   chip.className = "chip";
-  lane.head.append(sub, legend(), chip);
+  lane.head.append(sub, legend(), chip, views(model));
   const notice = document.createElement("div");
   notice.className = "notice err band";
   notice.setAttribute("role", "alert");
   const warning = document.createElement("div");
   warning.className = "notice warn band";
   warning.setAttribute("role", "status");
-  lane.card.append(notice, warning, slot(model, "lane"), progress(model));
+  lane.card.append(notice, warning, slot(model, "lane"), slot(model, "curves"), progress(model));
 
   const draw = () => {
     tag.textContent = model.head_text;
@@ -120,8 +159,9 @@ export function renderBoard({ model, el }) {
     warning.textContent = model.warning ? `▲ ${model.warning}` : "";
     warning.title = model.warning;
     root.classList.toggle("stale", model.stale);
+    root.classList.toggle("curves", model.shown === "curves");
   };
-  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale"]) model.on(name, draw);
+  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "shown"]) model.on(name, draw);
   draw();
   root.append(face.card, curve.card, lane.card);
   return root;

@@ -21,6 +21,7 @@ from workbench.state.session import STATUSES, Session
 from workbench.state.signals import SIGNALS, Signal, marker_signal, signals_of, speed_mm_s
 from workbench.state.stages import Request, Result, Stages
 from workbench.state.tokens import THEMES, Tokens, css_variables, read_tokens, source_slots, tokens
+from workbench.state.trajectory_data import signal_data
 
 __all__ = [
     "EDITABLE",
@@ -63,6 +64,7 @@ __all__ = [
     "read_tokens",
     "score",
     "signal_band",
+    "signal_data",
     "signals_of",
     "source_slots",
     "speed_mm_s",

@@ -29,7 +29,8 @@ _NAMES = {
     "pins": "pins",
     "bans": "bans",
 }
-_SLIDES = ({"shape"}, {"overlap_s"}, {"curve_weights"}, {"curve_weights", "weighting"})
+_CURVE = {"curve_weights", "weighting", "shape"}
+_SLIDES = ({"shape"}, {"overlap_s"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +162,9 @@ class History:
         return entry
 
     def _goes_on(self, here: Entry, keys: frozenset[str], now_s: float) -> bool:
-        same = set(keys) in _SLIDES and set(here.keys) in _SLIDES and keys <= here.keys
+        slider = set(keys) in _SLIDES and keys == here.keys
+        curve = keys == {"curve_weights"} and "curve_weights" in here.keys and here.keys <= _CURVE
+        same = slider or curve
         return same and now_s - here.when_s <= TOGETHER_S and self._child() is None
 
     def settle(self, effect: float) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from corpus_tools.core import ChosenUnit, FloatArray, Selection, Utterance
 from corpus_tools.fragments import missing_diphones
 from corpus_tools.speech import PhoneSet, lip_aperture_mm
-from corpus_tools.synthesis import weighting
+from corpus_tools.synthesis import DEFAULT_CURVE, weighting
 from workbench.state.effects import Effects
 from workbench.state.picks import pin_at
 from workbench.state.stages import Result
@@ -178,9 +179,11 @@ def stand_ins(result: Result) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def weighting_samples(name: str, shape: float, n: int = 101) -> FloatArray:
+def weighting_samples(
+    name: str, shape: float, curve_weights: Sequence[float] = DEFAULT_CURVE, n: int = 101
+) -> FloatArray:
     """Return g(u) at `n` even values of u in [0, 1] (paper A eq. (2))."""
-    return np.asarray(weighting(name, shape)(np.linspace(0.0, 1.0, n)))
+    return np.asarray(weighting(name, shape, curve_weights)(np.linspace(0.0, 1.0, n)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,9 @@ class Session(Editing):
     working = param.Boolean(default=False, doc="A result is being computed.")
     result = param.ClassSelector(class_=Result, allow_None=True, default=None)
     effects = param.ClassSelector(class_=Effects, allow_None=True, default=None, doc="Of every g(u).")
+    recorded = param.ClassSelector(
+        class_=Result, allow_None=True, default=None, doc="The capture's own motion."
+    )
     other = param.ClassSelector(class_=Result, allow_None=True, default=None, doc="Of setting A, if another.")
 
     def __init__(self, base: ConfigBase | None = None, **values: Any) -> None:

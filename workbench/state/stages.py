@@ -6,7 +6,7 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -22,6 +22,7 @@ from corpus_tools.pipeline import (
     blend_units,
     prepare_head,
     select_units,
+    speak_for,
 )
 from corpus_tools.synthesis import AlignedPieces, blend_pieces, narrowed, peak_ratios
 
@@ -170,8 +171,9 @@ class Stages:
         ran: list[str] = []
         started = time.perf_counter()
         exclude = request.exclude
-        utterance = corpus.utterance(request.sentence)
-        root = (corpus, request.sentence, request.text, exclude)
+        utterance = self._target(request, ran)
+        check()
+        root = (corpus, request.sentence, request.text, *_values(config, "speech"), exclude)
         key = (*root, *_values(config, "selection", "overrides"))
         selection = self._stage("select", key, lambda: select_units(corpus, utterance, config, exclude), ran)
         check()
@@ -188,3 +190,24 @@ class Stages:
         elapsed_ms = 1000 * (time.perf_counter() - started)
         parts = (utterance, selection, pieces, trajectory, head, animation, ratios)
         return Result(request, *parts, tuple(ran), elapsed_ms)
+
+    def recorded(self, result: Result) -> Result | None:
+        """Return the result with the motion of the recording itself in place of the blend; None for a text.
+
+        The cleaned capture of the sentence moves the same head: what the blend is compared with.
+        """
+        request = result.request
+        if request.text:
+            return None
+        capture = request.corpus.recording(request.sentence).capture
+        trajectory = Trajectory(
+            capture.times_s, capture.positions_mm, capture.names, (), capture.flags, capture.history
+        )
+        animation = animate(result.head, trajectory)
+        return replace(result, trajectory=trajectory, animation=animation, ratios=())
+
+    def _target(self, request: Request, ran: list[str]) -> Utterance:
+        if not request.text:
+            return request.corpus.utterance(request.sentence)
+        key = (request.corpus, request.text, *_values(request.config, "speech"))
+        return self._stage("speak", key, lambda: speak_for(request.corpus, request.text, request.config), ran)

@@ -14,7 +14,7 @@ from workbench.state import THEMES, Result, aperture_curves, joins_data, score
 from workbench.views.esm import esm
 from workbench.views.theme import palettes, style_sheet
 
-__all__ = ["NO_EFFECT", "Lane", "WeightingPlot"]
+__all__ = ["NO_EFFECT", "Lane", "Points", "WeightingPlot"]
 
 _NO_SCORE = {"duration": 1.0, "phones": [], "fragments": []}
 NO_EFFECT: dict[str, Any] = {"overlaps": [], "curves": [], "now": None, "other": None}

@@ -96,11 +96,15 @@ class Board(pn.custom.JSComponent):
     """
 
     face = pn.custom.Child()
+    inset = pn.custom.Child()
     presets = pn.custom.Child()
     plot = pn.custom.Child()
     sliders = pn.custom.Child()
     lane = pn.custom.Child()
+    curves = pn.custom.Child()
 
+    shown = param.Selector(default="lane", objects=["lane", "curves"], doc="What the lower card shows.")
+    inset_shown = param.Boolean(default=False, doc="Whether there is a recording to compare with.")
     head_text = param.String(default="")
     lane_text = param.String(default="")
     held_out_text = param.String(default="")

@@ -10,7 +10,7 @@ import panel as pn
 
 from corpus_tools.mesh import CHARACTERS, DEFORMERS
 from corpus_tools.methods import METHODS
-from corpus_tools.synthesis import WEIGHTINGS
+from corpus_tools.synthesis import WEIGHTINGS, curve_through
 from workbench.actions import ban_unit, options_shown, swap_to, swap_unit, toggle_pin, unban
 from workbench.state import (
     Effects,
@@ -29,8 +29,9 @@ from workbench.views.controls import Controls, preset_buttons, select, slider
 from workbench.views.face import Face
 from workbench.views.history_list import compare_html, history_html
 from workbench.views.inspector import bans_html, details_html, options_html
-from workbench.views.lane import NO_EFFECT, Lane, WeightingPlot
+from workbench.views.lane import NO_EFFECT, Lane, Points, WeightingPlot
 from workbench.views.shell import Board
+from workbench.views.trajectories import Trajectories
 
 __all__ = [
     "PRESETS",
@@ -43,6 +44,8 @@ __all__ = [
 ]
 
 _SHORT = {
+    "exponential": "Exp.",
+    "user": "Yours",
     "raised-cosine": "Cosine",
     "smoothstep": "Smooth",
     "smootherstep": "Smoother",
@@ -107,8 +110,13 @@ class BlendBoard(pn.viewable.Viewer):
         self._began_s = 0.0
         super().__init__(**params)
         self.face = Face(clock=clock, theme=session.theme)
+        self.inset = Face(clock=clock, theme=session.theme)
+        self.inset.mesh_view.description = "Recorded head"
+        self.face.mesh_view.param.watch(self._look, "camera")
         self.lane = Lane(on_swap=self._swap, session=clock, theme=session.theme)
-        self.plot = WeightingPlot(theme=session.theme)
+        self._handles: tuple[tuple[float, ...], Points] = ((), [])
+        self.plot = WeightingPlot(on_points=self._points, theme=session.theme)
+        self.trajectories = Trajectories(session, controls, clock)
         self.presets = preset_buttons(controls, "Weighting function g(u)", "weighting", PRESETS)
         self.overlap = slider(
             controls, "Longest overlap, s", "overlap_s", (0.0, 0.3), step=0.005, format="0.000"
@@ -118,17 +126,20 @@ class BlendBoard(pn.viewable.Viewer):
         )
         self.board = Board(
             face=self.face.view,
+            inset=self.inset.view,
             presets=self.presets,
             plot=self.plot,
             sliders=pn.Row(self.overlap, self.shape, sizing_mode="stretch_width", margin=0),
             lane=self.lane,
+            curves=self.trajectories.__panel__(),
             on_action=self._act,
         )
         watch = session.param.watch
         watch(self._theme, "theme")
         watch(self._result, ["result", "other"])
+        watch(self._recorded, "recorded")
         watch(self._select, "selected")
-        watch(self._curve, ["weighting", "shape", "kept", "side"])
+        watch(self._curve, ["weighting", "shape", "curve_weights", "kept", "side"])
         watch(self._effect, ["result", "other", "effects", "selected"])
         watch(self._state, ["message", "working", "side", "edits"])
         watch(self._opening, ["status", "fraction", "doing", "corpus", "target_kind", "text"])
@@ -137,6 +148,16 @@ class BlendBoard(pn.viewable.Viewer):
         self._curve()
         self._result()
         self._opening()
+
+    def _look(self, event: Any) -> None:
+        """Look at the recording as at the blend."""
+        self.inset.mesh_view.camera = dict(event.new)
+
+    def _recorded(self, event: Any) -> None:
+        if event.new is not None:
+            self.inset.show(event.new)
+            self.inset.mesh_view.camera = dict(self.face.mesh_view.camera)
+        self.board.inset_shown = event.new is not None
 
     def _opening(self, *events: Any) -> None:
         session = self._session
@@ -157,7 +178,7 @@ class BlendBoard(pn.viewable.Viewer):
         )
 
     def _theme(self, event: Any) -> None:
-        for view in (self.face, self.lane, self.plot):
+        for view in (self.face, self.inset, self.lane, self.plot):
             view.theme = event.new
 
     def _select(self, event: Any) -> None:
@@ -176,14 +197,30 @@ class BlendBoard(pn.viewable.Viewer):
             self._session.swap_sides()
         elif action == "cancel":
             self._on_cancel()
+        elif action == "view":
+            self.switch_view()
+
+    def switch_view(self) -> None:
+        """Show the trajectories instead of the lane, or the lane again."""
+        curves = self.board.shown == "lane"
+        self.board.shown = "curves" if curves else "lane"
+        self.trajectories.shown = curves
+
+    def _points(self, points: Points) -> None:
+        """Let the person's own curve go through the handles."""
+        weights = curve_through(points)
+        self._handles = (weights, points)
+        self._session.param.update(curve_weights=weights, weighting="user", shape=0.0)
 
     def _curve(self, *events: Any) -> None:
         session = self._session
-        values = weighting_samples(session.weighting, session.shape)
+        values = weighting_samples(session.weighting, session.shape, session.curve_weights)
         other = None
         if session.kept and session.difference:
             kept = session.other_settings
-            other = weighting_samples(kept["weighting"], kept["shape"])
+            other = weighting_samples(kept["weighting"], kept["shape"], kept["curve_weights"])
+        mine = session.weighting == "user" and session.curve_weights == self._handles[0]
+        self.plot.points = [list(p) for p in self._handles[1]] if mine and not session.shape else []
         self.plot.draw(values, session.weighting, other)
 
     def _effect(self, *events: Any) -> None:

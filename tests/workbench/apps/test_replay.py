@@ -38,3 +38,22 @@ def test_the_exported_line_makes_the_same_bytes_of_motion(opened, corpus_folder,
     assert (made / "motion.npz").read_bytes() == (tmp_path / "page.npz").read_bytes()
     vertices = np.load(made / "mesh.npz")["vertices_mm"]
     assert vertices.shape[1] == result.head.mesh.n_vertices
+
+
+@pytest.mark.slow
+def test_a_typed_sentence_is_replayed_with_its_pins(opened, corpus_folder, tmp_path):
+    session, stages = Session(folder=str(corpus_folder)), Stages()
+    session.opened(opened)
+    session.param.update(target_kind="text", text="the time is 9:30, isn't it", overlap_s=0.08)
+    session.accept(1, stages.run(session.request()))
+    assert session.result.request.exclude == ()
+    session.select(1)
+    swap_unit(session, 1)
+    result = stages.run(session.request())
+    path, _ = export_config(session, tmp_path / "typed.toml")
+    words = shlex.split(replay_command(session, path))
+    command = [sys.executable, "-c", "from corpus_tools.cli.main import run; run()", *words[1:]]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    write_motion(tmp_path / "page.npz", result.trajectory)
+    assert (tmp_path / "text_out" / "motion.npz").read_bytes() == (tmp_path / "page.npz").read_bytes()

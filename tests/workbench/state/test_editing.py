@@ -1,5 +1,6 @@
 """Pins, bans, other units, undo, two settings to compare: without a browser."""
 
+import numpy as np
 import pytest
 
 from corpus_tools.core import NoUnitError
@@ -12,7 +13,10 @@ from workbench.state import (
     aperture_curves,
     band_data,
     compute_effects,
+    marker_signal,
     score,
+    signal_data,
+    signals_of,
     stand_ins,
 )
 
@@ -214,6 +218,17 @@ def test_curves_hold_the_pieces_the_other_setting_and_the_natural_range(visit):
     assert len(band["times"]) == len(band["low"]) == len(band["high"]) > 0
 
 
+def test_the_recording_moves_the_same_head_and_a_text_has_none(visit):
+    session, result = visit.session, visit.session.result
+    recorded = visit.stages.recorded(result)
+    capture = session.corpus.recording(session.sentence).capture
+    assert recorded.head is result.head
+    assert recorded.animation.targets_mm.shape == (capture.n_frames, len(result.head.names), 3)
+    assert recorded.trajectory.times_s[0] == capture.times_s[0]
+    session.param.update(target_kind="text", text="the time is two")
+    assert visit.stages.recorded(visit.run()) is None
+
+
 def test_what_stood_in_is_told(visit):
     session = visit.session
     used = {c.unit.recording for c in session.result.selection.chosen}
@@ -224,3 +239,14 @@ def test_what_stood_in_is_told(visit):
     session.bans = every
     with pytest.raises(NoUnitError):
         visit.stages.run(session.request())
+
+
+def test_trajectories_hold_the_blend_and_what_each_fragment_goes_on_with(visit):
+    result = visit.session.result
+    joins = result.trajectory.joins
+    for signal in (*signals_of(result.trajectory.names), marker_signal("chin3", 1)):
+        data = signal_data(result, signal, speed=False)
+        assert len(data["now"][1]) == len(result.trajectory.times_s)
+        assert sum(len(lines) for lines in data["beyond"]) == 2 * len(joins)
+        assert np.allclose(data["spans"][1] - data["spans"][0], [j.overlap_s for j in joins])
+    assert (signal_data(result, signal, speed=True)["now"][1] != data["now"][1]).any()

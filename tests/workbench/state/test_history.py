@@ -16,6 +16,16 @@ def test_a_slider_that_goes_on_is_one_entry_and_a_pause_ends_it():
     assert len(history.entries) == 3
 
 
+def test_a_drag_of_the_own_curve_is_one_entry():
+    history = History()
+    history.record({"weighting": "linear", "shape": 0.2, "curve_weights": (1,)}, 0.0)
+    for step in range(5):
+        values = {"weighting": "user", "shape": 0.0, "curve_weights": (step, 2)}
+        history.record(values, 10.0 + 0.1 * step)
+    assert len(history.entries) == 2
+    assert history.undo()["weighting"] == "linear"
+
+
 def test_other_values_are_entries_of_their_own_however_quick():
     history = History()
     history.record({"bans": ()}, 0.0)

@@ -18,7 +18,7 @@ def test_actions_are_unique_and_described():
 
 def test_captions():
     captions = {r.id: r.caption for r in key_table()}
-    assert captions["curve"] == "1–7"
+    assert captions["curve"] == "1–9"
     assert captions["from_start"] == "Shift Space"
     assert captions["zoom_in"] == "+"
     assert captions["undo"] == "Ctrl Z"
