@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import contextlib
 import json
-import os
 import subprocess
 import threading
 from collections.abc import Mapping, Sequence
@@ -85,6 +84,8 @@ class Child:
 class Children:
     """Starts a child for each request; who asks twice finds the next one ready.
 
+    After a fork the waiting child is not one of the new process, counts as ended there, and is left alone.
+
     Parameters
     ----------
     command : sequence of str
@@ -97,25 +98,17 @@ class Children:
         self.what = what
         self._lock = threading.Lock()
         self._spare: Child | None = None
-        self._owner = os.getpid()
         self._asked = False
         atexit.register(self.close)
 
     def prepare(self) -> None:
         """Start the next child now, so that it is ready when it is asked."""
         with self._lock:
-            self._forget_foreign()
             if self._spare is None:
                 self._spare = Child(self.command)
 
-    def _forget_foreign(self) -> None:
-        """After a fork the waiting child belongs to the other process."""
-        if self._owner != os.getpid():
-            self._owner, self._spare = os.getpid(), None
-
     def _take(self) -> Child:
         with self._lock:
-            self._forget_foreign()
             child, self._spare = self._spare, None
         if child is not None and not child.alive:
             child.close()
@@ -152,7 +145,6 @@ class Children:
     def close(self) -> None:
         """End the child that waits, if there is one."""
         with self._lock:
-            self._forget_foreign()
             child, self._spare = self._spare, None
         if child is not None:
             child.close()
