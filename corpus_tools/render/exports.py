@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from corpus_tools.config import ConfigBase
 from corpus_tools.core import MissingExtraError, OutputError, Registry
+from corpus_tools.io import MOTION_WRITERS
 from corpus_tools.pipeline import Head, Progress, Synthesis
 from corpus_tools.render.encoder import ffmpeg_path
 from corpus_tools.render.film import write_film, write_frames
@@ -61,6 +65,31 @@ EXPORTERS.add(
         "Poses across the utterance with the paths of lips and jaw: strip.svg, .png.", write_strip, _can_draw
     ),
 )
+
+
+MOTION_FILES = {
+    "c3d": ("motion.c3d", "Marker motion as C3D: motion.c3d."),
+    "trc": ("motion.trc", "Marker motion as TRC: motion.trc."),
+    "csv": ("motion.csv", "Marker motion as a table with a row a frame: motion.csv."),
+    "csv-long": (
+        "motion-long.csv",
+        "Marker motion as a table with a row a marker and frame: motion-long.csv.",
+    ),
+}
+
+
+def _write_motion(
+    name: str, folder: Path, synthesis: Synthesis, head: Head, config: ConfigBase, progress: Progress
+) -> dict[str, Any]:
+    """Write the markers of ``motion.npz`` in another format: mm, in the actor's head-stabilised space."""
+    motion, file = synthesis.trajectory, MOTION_FILES[name][0]
+    progress(0.0, file)
+    MOTION_WRITERS[name](folder / file, np.asarray(motion.values_mm), motion.names, motion.rate_hz)
+    return {"file": file, "rate_hz": motion.rate_hz}
+
+
+for _name in MOTION_FILES:
+    EXPORTERS.add(_name, Exporter(MOTION_FILES[_name][1], functools.partial(_write_motion, _name)))
 
 
 def export_names(given: str | None) -> tuple[str, ...]:

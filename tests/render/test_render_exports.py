@@ -4,14 +4,17 @@ import hashlib
 import json
 import sys
 
+import numpy as np
 import pytest
 
 from corpus_tools.cli.common import guarded
 from corpus_tools.cli.main import app
 from corpus_tools.config import Config, config_with
 from corpus_tools.core import InputError
+from corpus_tools.io import MOTION_WRITERS, read_markers
 from corpus_tools.pipeline import prepare_head, synthesise, write_synthesis
 from corpus_tools.render import EXPORTERS, export_all, export_names, probe, probe_offscreen
+from corpus_tools.render.exports import MOTION_FILES
 
 SMALL = config_with(Config(), film__width=128, film__height=96, film__rate_hz=5.0, film__strip_frames=3)
 
@@ -57,6 +60,20 @@ def test_every_export_is_listed_and_twice_the_same(made, tmp_path, name):
         found.append(manifest["files"])
     assert found[0] == found[1]
     assert EXPORTERS[name].summary.endswith(".")
+
+
+@pytest.mark.parametrize("name", list(MOTION_FILES))
+def test_motion_comes_back_as_it_was(made, tmp_path, name):
+    synthesis, head = made
+    facts = export_all([name], tmp_path, synthesis, head, SMALL)[name]
+    found = read_markers(tmp_path / facts["file"])
+    assert found.names == synthesis.trajectory.names
+    assert found.rate_hz == pytest.approx(synthesis.trajectory.rate_hz)
+    np.testing.assert_allclose(found.positions_mm, synthesis.trajectory.values_mm, atol=2e-3)
+
+
+def test_every_motion_format_that_is_written_is_an_export():
+    assert set(MOTION_WRITERS) - {"npz"} == set(MOTION_FILES)
 
 
 def test_stopped_in_the_middle_nothing_remains(made, tmp_path):
