@@ -3,7 +3,7 @@
 A topic is a function ``Ground -> list of Row`` entered in :data:`BENCHMARKS`; its module is imported below.
 """
 
-from corpus_tools.cli.bench import cleaning, heads, selection, utterance, weightings
+from corpus_tools.cli.bench import cleaning, films, heads, selection, utterance, weightings
 from corpus_tools.cli.bench.command import register, run_bench
 from corpus_tools.cli.bench.rows import BENCHMARKS, Ground, Row
 
@@ -12,6 +12,7 @@ __all__ = [
     "Ground",
     "Row",
     "cleaning",
+    "films",
     "heads",
     "register",
     "run_bench",
