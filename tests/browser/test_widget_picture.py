@@ -39,7 +39,7 @@ def test_the_picture_agrees_with_pyvista(serve, browser_page, view):
 def test_default_lights_are_those_of_the_scene():
     if not probe_offscreen().ok:
         pytest.skip("off-screen drawing does not work here")
-    from workbench.views.scene_actors import lights_of
+    from workbench.views.plotter_scene import lights_of
 
     plotter = scene(bundled_head(), size=(60, 60))
     for ours, theirs in zip(DEFAULT_LIGHTS, lights_of(plotter), strict=True):

@@ -4,23 +4,27 @@ import { add, cross, length, rotate, scale, subtract, unit } from "./linalg.js";
 const DOLLY_PER_PX = 0.001;
 const SETTLE_MS = 200;
 const TURN = Math.PI / 18;
+/** A press that moves less than this is a click, px. */
+const CLICK_PX = 4;
 
 export class Trackball {
   /**
-   * @param {HTMLCanvasElement} canvas
+   * @param {HTMLElement} canvas
    * @param {() => object} home the camera of a reset
    * @param {(settled: boolean) => void} changed called after every change; settled: the hand has let go
+   * @param {(event: PointerEvent) => void} clicked called for a press without a drag
    */
-  constructor(canvas, home, changed) {
+  constructor(canvas, home, changed, clicked = () => {}) {
     this.canvas = canvas;
     this.home = home;
     this.changed = changed;
+    this.clicked = clicked;
     this.camera = home();
     this.drag = null;
     this.timer = 0;
     canvas.addEventListener("pointerdown", (event) => this.grab(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
-    canvas.addEventListener("pointerup", () => this.release());
+    canvas.addEventListener("pointerup", (event) => this.release(event));
     canvas.addEventListener("pointercancel", () => this.release());
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
@@ -35,7 +39,8 @@ export class Trackball {
   }
 
   grab(event) {
-    this.drag = { x: event.clientX, y: event.clientY, pan: event.button !== 0 || event.shiftKey };
+    const pan = event.button !== 0 || event.shiftKey;
+    this.drag = { x: event.clientX, y: event.clientY, pan, far: 0, first: !pan };
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.focus({ preventScroll: true });
   }
@@ -43,7 +48,7 @@ export class Trackball {
   move(event) {
     if (!this.drag) return;
     const [dx, dy] = [event.clientX - this.drag.x, event.clientY - this.drag.y];
-    Object.assign(this.drag, { x: event.clientX, y: event.clientY });
+    Object.assign(this.drag, { x: event.clientX, y: event.clientY, far: this.drag.far + Math.hypot(dx, dy) });
     if (this.drag.pan) this.pan(dx, dy);
     else {
       const perPx = Math.PI / (this.canvas.clientHeight || 1);
@@ -52,9 +57,12 @@ export class Trackball {
     this.changed(false);
   }
 
-  release() {
+  /** @param {PointerEvent} [event] missing when the press was taken away */
+  release(event) {
     if (!this.drag) return;
+    const { far, first } = this.drag;
     this.drag = null;
+    if (event && first && far < CLICK_PX) this.clicked(event);
     this.changed(true);
   }
 

@@ -1,9 +1,12 @@
-/** One actor of the mesh view: a surface or a set of points, with its positions in a float texture. */
-import { texture, useTexture } from "./gl_program.js";
-import { floats, integers, octets } from "./linalg.js";
+/** One actor of the mesh view: a surface, points or lines, with its positions in a float texture. */
+import { BasisDeformer, Net, PatchDeformer } from "./gl_deform.js";
+import { texture } from "./gl_program.js";
+import { floats, integers, octets, transform } from "./linalg.js";
 
-const SURFACE = 0;
-const POINTS = 1;
+export const SURFACE = 0;
+export const POINTS = 1;
+export const LINES = 2;
+const KINDS = { surface: SURFACE, points: POINTS, lines: LINES };
 
 /** Texels of four floats from rows of three, padded to width x height. */
 function padded(rows, width, height) {
@@ -51,14 +54,15 @@ function grown(values, size) {
 
 export class Actor {
   /**
-   * @param {WebGL2RenderingContext} gl
+   * @param {import("./gl_scene.js").Scene} scene
    * @param {object} spec as made by workbench.views.scene_actors
    */
-  constructor(gl, spec) {
+  constructor(scene, spec) {
+    const { gl } = scene;
     this.gl = gl;
     this.name = spec.name;
     this.spec = spec;
-    this.kind = spec.kind === "points" ? POINTS : SURFACE;
+    this.kind = KINDS[spec.kind];
     this.visible = spec.visible;
     this.opacity = spec.opacity;
     /** 16 numbers or null: rigid motion, on top of the actor's own place. */
@@ -70,15 +74,16 @@ export class Actor {
     this.textures = [];
     this.buffers = [];
     this.staged = padded(points, this.width, this.height);
-    this.bounds = extent(points);
+    this.bounds = extent(points, spec.matrix);
     this.rest = this.keep(texture(gl, gl.RGBA32F, this.width, this.height, this.staged));
     this.current = this.rest;
     this.array = gl.createVertexArray();
     gl.bindVertexArray(this.array);
     if (spec.colours?.byteLength) this.uploadColours(octets(spec.colours));
-    if (this.kind === SURFACE) this.uploadFaces(integers(spec.faces));
+    if (this.kind !== POINTS) this.uploadCells(integers(spec.cells));
     gl.bindVertexArray(null);
-    if (spec.basis?.byteLength) this.uploadBasis(floats(spec.basis));
+    this.setScalars(spec.scalars);
+    this.deformer = this.makeDeformer(scene, spec);
   }
 
   keep(made) {
@@ -86,20 +91,66 @@ export class Actor {
     return made;
   }
 
+  makeDeformer(scene, { basis, patches }) {
+    const { gl, n } = this;
+    if (basis?.byteLength) return new BasisDeformer(gl, scene.programs, this, floats(basis), n);
+    if (!patches) return null;
+    const shared = scene.actors.get(patches.of)?.deformer?.net;
+    if (!shared && !patches.rest) throw new Error(`${this.name} has no patches`);
+    const net = shared ?? new Net(gl, patches);
+    return new PatchDeformer(gl, scene.programs, this, net, !shared, floats(patches.attached));
+  }
+
   uploadColours(colours) {
-    const { gl } = this;
-    const buffer = gl.createBuffer();
-    this.buffers.push(buffer);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, colours, gl.STATIC_DRAW);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 4, gl.UNSIGNED_BYTE, true, 0, 0);
+    this.fill(0, this.buffer(), 4, this.gl.UNSIGNED_BYTE, colours);
     this.coloured = true;
   }
 
-  uploadFaces(faces) {
+  /**
+   * Colour by numbers, or no longer.
+   * @param {?{values, range: number[], table, title: string}} scalars float32 bytes, a value a vertex; RGBA
+   *   bytes of the table
+   */
+  setScalars(scalars) {
     const { gl } = this;
-    this.corners = faces.length;
+    this.scalars = scalars ?? null;
+    gl.deleteTexture(this.table ?? null);
+    this.table = null;
+    if (!scalars) return;
+    const table = octets(scalars.table);
+    this.table = texture(gl, gl.RGBA8, table.length / 4, 1, table);
+    this.scalarBuffer ??= this.buffer();
+    gl.bindVertexArray(this.array);
+    this.fill(1, this.scalarBuffer, 1, gl.FLOAT, floats(scalars.values));
+    gl.bindVertexArray(null);
+  }
+
+  buffer() {
+    const made = this.gl.createBuffer();
+    this.buffers.push(made);
+    return made;
+  }
+
+  /** Let an attribute of the vertices read these numbers. */
+  fill(location, buffer, size, type, values) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
+    gl.enableVertexAttribArray(location);
+    gl.vertexAttribPointer(location, size, type, type === gl.UNSIGNED_BYTE, 0, 0);
+  }
+
+  uploadCells(cells) {
+    const { gl } = this;
+    this.corners = cells.length;
+    this.cells = cells;
+    if (this.kind === SURFACE) this.uploadRing(cells);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, cells, gl.STATIC_DRAW);
+  }
+
+  uploadRing(faces) {
+    const { gl } = this;
     const { start, pairs } = oneRing(faces, this.n);
     this.ringWidth = Math.max(1, Math.min(2048, faces.length));
     const rows = Math.max(1, Math.ceil(faces.length / this.ringWidth));
@@ -107,30 +158,6 @@ export class Actor {
     this.ring = this.keep(texture(gl, gl.RG32UI, this.ringWidth, rows, ring));
     const starts = grown(start, 2 * this.width * this.height);
     this.ringStart = this.keep(texture(gl, gl.RG32UI, this.width, this.height, starts));
-    const buffer = gl.createBuffer();
-    this.buffers.push(buffer);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
-  }
-
-  /** Basis rows (vertex after vertex) into layers of four coefficients. */
-  uploadBasis(basis) {
-    const { gl, n, width, height } = this;
-    this.k = basis.length / n;
-    this.layers = Math.ceil(this.k / 4);
-    const layer = 4 * width * height;
-    const packed = new Float32Array(layer * this.layers);
-    for (let v = 0; v < n; v += 1) {
-      for (let k = 0; k < this.k; k += 1) packed[(k >> 2) * layer + 4 * v + (k & 3)] = basis[v * this.k + k];
-    }
-    this.basis = this.keep(texture(gl, gl.RGBA32F, width, height, packed, this.layers));
-    this.shift = new Float32Array(16 * this.layers);
-    this.shiftTexture = this.keep(texture(gl, gl.RGBA32F, 4 * this.layers, 1, this.shift));
-    this.deformed = this.keep(texture(gl, gl.RGBA32F, width, height, null));
-    this.target = gl.createFramebuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.deformed, 0);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
   /** Replace all positions: (n, 3) floats. */
@@ -146,32 +173,20 @@ export class Actor {
   }
 
   /**
-   * Deform: rest + basis * displacement, on the GPU.
-   * @param {{program: WebGLProgram, at: object}} deform
-   * @param {Float32Array} displacement (k, 3), mm
+   * Deform on the GPU.
+   * @param {Float32Array} displacement (k, 3), mm, of the markers from rest
+   * @param {number} stamp another number for every other displacement
    */
-  setDisplacement(deform, displacement) {
-    const { gl } = this;
-    for (let i = 0, j = 0; i < 3 * this.k; i += 3, j += 4) {
-      this.shift[j] = displacement[i];
-      this.shift[j + 1] = displacement[i + 1];
-      this.shift[j + 2] = displacement[i + 2];
-    }
-    gl.bindTexture(gl.TEXTURE_2D, this.shiftTexture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 4 * this.layers, 1, gl.RGBA, gl.FLOAT, this.shift);
-    gl.useProgram(deform.program);
-    gl.bindVertexArray(null);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-    gl.viewport(0, 0, this.width, this.height);
-    gl.disable(gl.BLEND);
-    gl.disable(gl.DEPTH_TEST);
-    useTexture(gl, 0, gl.TEXTURE_2D, this.rest, deform.at.rest);
-    useTexture(gl, 1, gl.TEXTURE_2D, this.shiftTexture, deform.at.displacement);
-    useTexture(gl, 2, gl.TEXTURE_2D_ARRAY, this.basis, deform.at.basis);
-    gl.uniform1i(deform.at.layers, this.layers);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    this.current = this.deformed;
+  move(displacement, stamp) {
+    if (this.deformer?.k * 3 !== displacement.length) return;
+    this.deformer.move(displacement, stamp);
+    this.current = this.deformer.moved;
+  }
+
+  /** From the actor to the scene: its own place, then its motion; 16 numbers or null. */
+  place(multiply) {
+    const own = this.spec.matrix ?? null;
+    return own && this.rigid ? multiply(own, this.rigid) : (this.rigid ?? own);
   }
 
   /** Back to where the actor stands when nothing moves it. */
@@ -182,14 +197,7 @@ export class Actor {
 
   /** Positions as the GPU has them now, without rigid motion: (n, 3) floats. */
   positions() {
-    const { gl } = this;
-    let texels = this.staged;
-    if (this.current === this.deformed) {
-      texels = new Float32Array(4 * this.width * this.height);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-      gl.readPixels(0, 0, this.width, this.height, gl.RGBA, gl.FLOAT, texels);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    }
+    const texels = this.current === this.rest ? this.staged : this.deformer.read();
     const out = new Float32Array(3 * this.n);
     for (let i = 0, j = 0; i < out.length; i += 3, j += 4) out.set(texels.subarray(j, j + 3), i);
     return out;
@@ -199,19 +207,23 @@ export class Actor {
     const { gl } = this;
     for (const made of this.textures) gl.deleteTexture(made);
     for (const made of this.buffers) gl.deleteBuffer(made);
+    gl.deleteTexture(this.table);
     gl.deleteVertexArray(this.array);
-    if (this.target) gl.deleteFramebuffer(this.target);
+    this.deformer?.dispose();
   }
 }
 
-/** Lowest and highest corner of points. */
-function extent(points) {
+/** Lowest and highest corner of points, where the actor's own matrix puts them. */
+function extent(points, matrix) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < points.length; i += 1) {
-    const axis = i % 3;
-    if (points[i] < low[axis]) low[axis] = points[i];
-    if (points[i] > high[axis]) high[axis] = points[i];
+  for (let i = 0; i < points.length; i += 3) {
+    const point = points.subarray(i, i + 3);
+    const placed = matrix ? transform(matrix, point) : point;
+    for (let axis = 0; axis < 3; axis += 1) {
+      if (placed[axis] < low[axis]) low[axis] = placed[axis];
+      if (placed[axis] > high[axis]) high[axis] = placed[axis];
+    }
   }
   return [low, high];
 }

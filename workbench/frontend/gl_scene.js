@@ -1,6 +1,7 @@
 /** The scene of a mesh view: its actors, its lights, and how it is drawn. */
-import { Actor } from "./gl_actor.js";
-import { MAX_LIGHTS, programs, useTexture } from "./gl_program.js";
+import { Actor, LINES, POINTS, SURFACE } from "./gl_actor.js";
+import { Programs, useTexture } from "./gl_program.js";
+import { MAX_LIGHTS } from "./gl_shaders.js";
 import { SmoothEdges, drawnInSoftware } from "./gl_smooth.js";
 import { length, multiply, parallel, perspective, subtract, unit, viewMatrix } from "./linalg.js";
 
@@ -18,7 +19,7 @@ export class Scene {
       throw new Error("this browser's WebGL2 cannot draw into float textures");
     }
     this.gl = gl;
-    this.programs = programs(gl);
+    this.programs = new Programs(gl);
     this.smooth = new SmoothEdges(gl);
     /** Smooth edges cost too much while something moves. */
     this.slow = drawnInSoftware(gl);
@@ -29,13 +30,23 @@ export class Scene {
   /** Replace all actors. */
   setActors(specs) {
     this.clear();
-    for (const spec of specs) this.actors.set(spec.name, new Actor(this.gl, spec));
+    for (const spec of specs) this.add(spec);
   }
 
-  /** Displace the markers of a deforming actor. */
-  deform(name, displacement) {
-    const actor = this.actors.get(name);
-    if (actor?.basis) actor.setDisplacement(this.programs.deform, displacement);
+  /** One more actor; those whose patches it shares must be there. */
+  add(spec) {
+    this.remove(spec.name);
+    this.actors.set(spec.name, new Actor(this, spec));
+  }
+
+  remove(name) {
+    this.actors.get(name)?.dispose();
+    this.actors.delete(name);
+  }
+
+  /** Actors that have anything to show. */
+  shown() {
+    return [...this.actors.values()].filter((a) => a.visible && a.opacity > 0 && a.n);
   }
 
   /** A camera that looks at everything from the front. */
@@ -79,7 +90,7 @@ export class Scene {
    */
   draw(camera, lights, ground, smooth = true) {
     const { gl } = this;
-    const { program } = this.programs.draw;
+    const { program } = this.programs.get("draw");
     const { view, projection } = this.matrices(camera);
     if (smooth) this.smooth.begin();
     else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -92,7 +103,7 @@ export class Scene {
     gl.disable(gl.BLEND);
     gl.useProgram(program);
     this.setLights(lights, view);
-    const shown = [...this.actors.values()].filter((a) => a.visible && a.opacity > 0 && a.n);
+    const shown = this.shown();
     for (const actor of shown) if (actor.opacity >= 1) this.drawActor(actor, view, projection);
     for (const actor of shown) {
       if (actor.opacity >= 1) continue;
@@ -110,7 +121,7 @@ export class Scene {
 
   setLights(lights, view) {
     const { gl } = this;
-    const { at } = this.programs.draw;
+    const { at } = this.programs.get("draw");
     const from = new Float32Array(3 * MAX_LIGHTS);
     const colour = new Float32Array(3 * MAX_LIGHTS);
     lights.slice(0, MAX_LIGHTS).forEach((light, i) => {
@@ -128,13 +139,13 @@ export class Scene {
 
   drawActor(actor, view, projection) {
     const { gl } = this;
-    const { at } = this.programs.draw;
+    const { at } = this.programs.get("draw");
     const { spec } = actor;
-    let toEye = spec.matrix ? multiply(view, spec.matrix) : view;
-    if (actor.rigid) toEye = multiply(toEye, actor.rigid);
+    const place = actor.place(multiply);
+    const toEye = place ? multiply(view, place) : view;
     gl.bindVertexArray(actor.array);
     if (!actor.coloured) gl.vertexAttrib4f(0, 1, 1, 1, 1);
-    const tint = actor.coloured ? [1, 1, 1] : spec.colour;
+    const tint = actor.coloured || actor.table ? [1, 1, 1] : spec.colour;
     gl.uniform4f(at.tint, ...tint, actor.opacity);
     gl.uniform4f(at.material, ...spec.material);
     gl.uniformMatrix4fv(at.toEye, false, toEye);
@@ -143,16 +154,21 @@ export class Scene {
     gl.uniform1i(at.width, actor.width);
     gl.uniform1f(at.pointSize, spec.size * (globalThis.devicePixelRatio || 1));
     useTexture(gl, 0, gl.TEXTURE_2D, actor.current, at.positions);
-    if (actor.kind === 0) {
-      gl.uniform1i(at.ringWidth, actor.ringWidth);
-      useTexture(gl, 3, gl.TEXTURE_2D, actor.ring, at.ring);
-      useTexture(gl, 4, gl.TEXTURE_2D, actor.ringStart, at.ringStart);
-      gl.drawElements(gl.TRIANGLES, actor.corners, gl.UNSIGNED_INT, 0);
-    } else {
-      useTexture(gl, 3, gl.TEXTURE_2D, null, at.ring);
-      useTexture(gl, 4, gl.TEXTURE_2D, null, at.ringStart);
-      gl.drawArrays(gl.POINTS, 0, actor.n);
-    }
+    useTexture(gl, 3, gl.TEXTURE_2D, actor.ring ?? null, at.ring);
+    useTexture(gl, 4, gl.TEXTURE_2D, actor.ringStart ?? null, at.ringStart);
+    gl.uniform1i(at.ringWidth, actor.ringWidth ?? 1);
+    useTexture(gl, 5, gl.TEXTURE_2D, actor.table, at.table);
+    gl.uniform1i(at.colours, actor.table ? actor.scalars.table.byteLength / 4 - 3 : 0);
+    if (actor.table) gl.uniform2f(at.range, ...actor.scalars.range);
+    this.drawCells(actor);
+  }
+
+  /** The draw call alone: what is bound says how. */
+  drawCells({ kind, corners, n }) {
+    const { gl } = this;
+    if (kind === SURFACE) gl.drawElements(gl.TRIANGLES, corners, gl.UNSIGNED_INT, 0);
+    if (kind === LINES) gl.drawElements(gl.LINES, corners, gl.UNSIGNED_INT, 0);
+    if (kind === POINTS) gl.drawArrays(gl.POINTS, 0, n);
   }
 
   /** Red, green, blue, opacity of every pixel that was just drawn, from the lower left on. */
@@ -179,8 +195,7 @@ export class Scene {
   dispose() {
     this.clear();
     this.smooth.dispose();
-    this.gl.deleteProgram(this.programs.deform.program);
-    this.gl.deleteProgram(this.programs.draw.program);
+    this.programs.dispose();
     this.gl.getExtension("WEBGL_lose_context")?.loseContext();
   }
 }

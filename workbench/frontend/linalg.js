@@ -39,6 +39,10 @@ export function multiply(a, b) {
   return out;
 }
 
+/** Where a matrix puts a point. @returns {number[]} */
+export const transform = (m, p) =>
+  [0, 1, 2].map((row) => m[row] * p[0] + m[4 + row] * p[1] + m[8 + row] * p[2] + m[12 + row]);
+
 /** From the world to the eye: the eye looks along -z, x to the right, y up. */
 export function viewMatrix(camera) {
   const z = unit(subtract(camera.position, camera.focal_point));

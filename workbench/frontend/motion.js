@@ -1,12 +1,6 @@
 /** Motion on the clock: displacements of markers, rigid motion and moving points of several actors. */
 import { floats } from "./linalg.js";
 
-/** Name and value of every entry, whether the wire made an object or a map of it. */
-function entries(table) {
-  if (!table) return [];
-  return table instanceof Map ? [...table] : Object.entries(table);
-}
-
 /** A frame between two frames: (1 - share) a + share b. */
 function between(values, size, frame, share, out) {
   const a = frame * size;
@@ -19,24 +13,24 @@ function between(values, size, frame, share, out) {
   return out;
 }
 
+/** Another number for every moment that a scene was put at. */
+let stamps = 0;
+
 export class Motion {
   /**
-   * @param {object} sent {n, rate, start, frames, deform, rigid, points}: the last three hold float32 bytes by
-   *   actor: (frames, k, 3) displacements, (frames, 16) matrices, (frames, n, 3) positions
+   * @param {object} sent {n, rate, start, frames, tracks: [{kind, actors, values}]}: float32 bytes of kind
+   *   "deform": (frames, k, 3) displacements, "rigid": (frames, 16) matrices, "points": (frames, n, 3) positions
    */
   constructor(sent) {
     this.n = sent?.n ?? 0;
     this.rate = sent?.rate ?? 120;
     this.start = sent?.start ?? 0;
     this.frames = sent?.frames ?? 0;
-    this.tracks = [];
-    for (const kind of ["deform", "rigid", "points"]) {
-      for (const [actor, bytes] of entries(sent?.[kind])) {
-        const values = floats(bytes);
-        const size = values.length / this.frames;
-        this.tracks.push({ kind, actor, values, size, out: new Float32Array(size) });
-      }
-    }
+    this.tracks = (sent?.tracks ?? []).map(({ kind, actors, values: bytes }) => {
+      const values = floats(bytes);
+      const size = values.length / this.frames;
+      return { kind, actors, values, size, out: new Float32Array(size) };
+    });
     /** Frame on show, whole number or between two; -1: none. */
     this.shown = -1;
   }
@@ -52,7 +46,8 @@ export class Motion {
   }
 
   /**
-   * Put the actors of a scene where they are at a time; says whether anything changed.
+   * Put the actors of a scene where they are at a time; says whether anything changed. What is hidden stays
+   * where it is: `shown` = -1 puts it right when it appears.
    * @param {import("./gl_scene.js").Scene} scene
    * @param {number} t seconds
    */
@@ -62,13 +57,16 @@ export class Motion {
     if (frame === this.shown) return false;
     this.shown = frame;
     const whole = Math.floor(frame);
-    for (const { kind, actor, values, size, out } of this.tracks) {
-      const found = scene.actors.get(actor);
-      if (!found) continue;
+    stamps += 1;
+    for (const { kind, actors, values, size, out } of this.tracks) {
       between(values, size, whole, frame - whole, out);
-      if (kind === "deform" && size === 3 * found.k) scene.deform(actor, out);
-      else if (kind === "rigid") found.rigid = out;
-      else if (kind === "points" && size === 3 * found.n) found.setPoints(out);
+      for (const name of actors) {
+        const actor = scene.actors.get(name);
+        if (!actor?.visible) continue;
+        if (kind === "deform") actor.move(out, stamps);
+        else if (kind === "rigid") actor.rigid = out;
+        else if (size === 3 * actor.n) actor.setPoints(out);
+      }
     }
     return true;
   }

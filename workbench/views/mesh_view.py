@@ -15,14 +15,19 @@ from corpus_tools.core import MeshError
 from workbench.state import THEMES
 from workbench.views.esm import esm
 from workbench.views.latest import LatestWins
-from workbench.views.scene_actors import DEFAULT_LIGHTS, camera_of, lights_of, plotter_actors
+from workbench.views.motion_data import motion_data
+from workbench.views.plotter_scene import camera_of, lights_of, plotter_actors
+from workbench.views.scalars import scalar_colours
+from workbench.views.scene_actors import DEFAULT_LIGHTS
 from workbench.views.theme import palettes, style_sheet
 
 __all__ = ["MeshView"]
 
 
 class MeshView(pn.custom.JSComponent):
-    """Surfaces and points of a scene; drag turns, shift-drag pans, the wheel comes nearer, R resets.
+    """Surfaces, lines and points of a scene; drag turns, shift-drag pans, the wheel comes nearer, R resets.
+
+    A click picks: `picked` says what is under the pointer.
 
     Parameters
     ----------
@@ -50,6 +55,11 @@ class MeshView(pn.custom.JSComponent):
     session = param.String(default="default", doc="Id of the clock.")
     description = param.String(default="3-D view of a head", doc="What a screen reader says.")
     unavailable = param.String(default="", doc="Why the browser cannot show the view; empty when it can.")
+    picked = param.Dict(
+        default={}, doc="What was clicked: name, index, label, position, value; empty: nothing."
+    )
+    hover = param.Boolean(default=False, doc="Set `hovered` while the pointer moves.")
+    hovered = param.Dict(default={}, doc="What is under the pointer, as of `picked`.")
     acknowledged = param.Integer(default=0, doc="Number of the last change that was painted.")
 
     _esm = esm("mesh", "renderMesh")
@@ -62,7 +72,7 @@ class MeshView(pn.custom.JSComponent):
         **params: Any,
     ) -> None:
         self._line = LatestWins(self._deliver)
-        self._pushed: dict[str, bytes] = {}
+        self._told: dict[tuple[str, str], dict[str, Any]] = {}
         super().__init__(**{"sizing_mode": "stretch_both", "palettes": palettes(), **params})
         if scene is not None:
             self.show_scene(scene, bases)
@@ -78,7 +88,7 @@ class MeshView(pn.custom.JSComponent):
         Raises
         ------
         MeshError
-            An actor that is no PolyData; the sentence names it.
+            An actor that is not of PolyData; the sentence names it.
         """
         self.show_actors(plotter_actors(scene, bases), lights_of(scene), camera_of(scene))
 
@@ -92,16 +102,21 @@ class MeshView(pn.custom.JSComponent):
 
         `lights` and `camera` stay as they are when not given.
         """
-        names = [actor["name"] for actor in actors]
-        if len(set(names)) < len(names):
-            raise MeshError(f"Two actors are called '{next(n for n in names if names.count(n) > 1)}'.")
-        self._pushed.clear()
+        _check_names(actors)
+        self._told.clear()
         changes: dict[str, Any] = {"actors": actors, "motion": {}, "revision": self.revision + 1}
         if lights is not None:
             changes["lights"] = lights
         if camera is not None:
             changes["camera"] = dict(camera)
         self.param.update(**changes)
+
+    def add_actors(self, actors: list[dict[str, Any]]) -> None:
+        """Show more actors beside those that are there, whose motion goes on."""
+        _check_names([*self.actors, *actors])
+        self.actors.extend(actors)
+        for actor in actors:
+            self._tell("add", actor["name"], actors=[actor])
 
     def actor(self, name: str) -> dict[str, Any]:
         """Return an actor by name.
@@ -146,37 +161,45 @@ class MeshView(pn.custom.JSComponent):
         MeshError
             An actor is not there, its numbers do not fit, or the actors differ in their number of frames.
         """
-        tracks: dict[str, dict[str, npt.NDArray[np.float32]]] = {
-            "deform": {n: self._track(n, v, "basis") for n, v in (displacements or {}).items()},
-            "rigid": {n: _matrices(n, v) for n, v in (rigid or {}).items() if self.actor(n)},
-            "points": {n: self._track(n, v, "points") for n, v in (points or {}).items()},
-        }
-        frames = {len(values) for group in tracks.values() for values in group.values()}
-        if len(frames) != 1 or not all(frames):
-            raise MeshError(
-                f"All motion must have one number of frames, at least 1; it has {sorted(frames)}."
-            )
-        sent = {kind: {n: v.tobytes() for n, v in group.items()} for kind, group in tracks.items()}
-        self._line.offer(
-            "motion", {"rate": float(rate_hz), "start": float(start_s), "frames": frames.pop(), **sent}
-        )
-
-    def _track(self, name: str, values: npt.ArrayLike, part: str) -> npt.NDArray[np.float32]:
-        actor = self.actor(name)
-        n_points = len(actor["points"]) // 12
-        rows = len(actor["basis"]) // (4 * n_points) if part == "basis" else n_points
-        track = np.ascontiguousarray(values, np.float32)
-        if track.ndim != 3 or track.shape[1:] != (rows, 3) or not rows:
-            what = f"(frames, {rows}, 3) was expected" if rows else "it has no basis"
-            raise MeshError(f"The motion of '{name}' has shape {track.shape}; {what}.")
-        return track
+        for name in {**(displacements or {}), **(rigid or {}), **(points or {})}:
+            self.actor(name)
+        actors = {actor["name"]: actor for actor in self.actors}
+        self._line.offer("motion", motion_data(actors, rate_hz, displacements, rigid, points, start_s))
 
     def push_points(self, name: str, positions: npt.ArrayLike) -> None:
         """Show other positions of an actor's points, (n_points, 3); later ones replace those that wait."""
         points = np.ascontiguousarray(positions, np.float32)
         if points.shape != (len(self.actor(name)["points"]) // 12, 3):
             raise MeshError(f"The points of '{name}' have shape {points.shape}.")
-        self._line.offer(f"points {name}", points.tobytes())
+        self._line.offer(f"points {name}", {"points": points.tobytes()})
+
+    def set_scalars(self, name: str, values: npt.ArrayLike | None, **options: Any) -> None:
+        """Colour an actor by numbers; later ones replace those that wait.
+
+        Parameters
+        ----------
+        name : str
+        values : (n_points,) or a value for every id of the actor, optional
+            None: its own colours again.
+        **options
+            cmap, clim, title and so on, as of :func:`workbench.views.scalars.scalar_colours`.
+
+        Raises
+        ------
+        MeshError
+            There is no such actor, or it has another number of points.
+        """
+        actor = self.actor(name)
+        if values is None:
+            self._line.offer(f"scalars {name}", {"scalars": None})
+            return
+        row = np.asarray(values, np.float32)
+        n_points, ids = len(actor["points"]) // 12, np.frombuffer(actor["ids"], np.uint32)
+        if len(row) != n_points and len(ids) and len(row) > ids.max():
+            row = row[ids]
+        if row.shape != (n_points,):
+            raise MeshError(f"The scalars of '{name}' have shape {row.shape}; ({n_points},) was expected.")
+        self._line.offer(f"scalars {name}", {"scalars": scalar_colours(row, **options)})
 
     def set_style(self, name: str, *, visible: bool | None = None, opacity: float | None = None) -> None:
         """Show or hide an actor, or make it translucent."""
@@ -186,7 +209,8 @@ class MeshView(pn.custom.JSComponent):
         for actor in self.actors:
             if actor["name"] == name:
                 actor.update(values)
-        self._send_msg({"type": "style", "actor": name, "values": values})
+        before = self._told.get(("style", name), {}).get("values", {})
+        self._tell("style", name, values={**before, **values})
 
     def camera_from(self, plotter: pv.Plotter) -> None:
         """Look as a pyvista scene does."""
@@ -213,9 +237,13 @@ class MeshView(pn.custom.JSComponent):
         if key == "motion":
             self.motion = {**change, "n": number}
             return
-        name = key.removeprefix("points ")
-        self._pushed[name] = change
-        self._send_msg({"type": "points", "n": number, "actor": name, "points": change})
+        kind, _, name = key.partition(" ")
+        self._tell(kind, name, n=number, **change)
+
+    def _tell(self, kind: str, name: str, **values: Any) -> None:
+        """Send a change of an actor, and keep it for whoever renders the view later."""
+        self._told[kind, name] = message = {"type": kind, "actor": name, **values}
+        self._send_msg(message)
 
     def _handle_msg(self, data: Any) -> None:
         if data["type"] == "ack":
@@ -223,16 +251,31 @@ class MeshView(pn.custom.JSComponent):
             self._line.acknowledge(self.acknowledged)
         elif data["type"] == "ready":
             self.unavailable = ""
-            for name, points in self._pushed.items():
-                self._send_msg({"type": "points", "n": self._line.number, "actor": name, "points": points})
+            for message in self._told.values():
+                self._send_msg(message)
             self._line.ready()
+        elif data["type"] == "pick":
+            self.param.update(**{data["what"]: self._named(data["found"])})
         elif data["type"] == "unavailable":
             self.unavailable = str(data["reason"])
 
+    def _named(self, found: Any) -> dict[str, Any]:
+        """Return what was picked, with the number and the label that the actor gives its points."""
+        if not found or found["name"] not in (actor["name"] for actor in self.actors):
+            return {}
+        actor, row = self.actor(found["name"]), int(found["index"])
+        ids = np.frombuffer(actor["ids"], np.uint32)
+        value = found.get("value")
+        return {
+            "name": found["name"],
+            "index": int(ids[row]) if len(ids) else row,
+            "label": actor["labels"][row] if row < len(actor["labels"]) else "",
+            "position": [float(v) for v in found["position"]],
+            "value": None if value is None else float(value),
+        }
 
-def _matrices(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float32]:
-    """Return matrices column by column, (n_frames, 16)."""
-    matrices = np.asarray(values, np.float32)
-    if matrices.ndim != 3 or matrices.shape[1:] != (4, 4):
-        raise MeshError(f"The matrices of '{name}' have shape {matrices.shape}; (frames, 4, 4) was expected.")
-    return np.ascontiguousarray(matrices.transpose(0, 2, 1)).reshape(len(matrices), 16)
+
+def _check_names(actors: list[dict[str, Any]]) -> None:
+    names = [actor["name"] for actor in actors]
+    if len(set(names)) < len(names):
+        raise MeshError(f"Two actors are called '{next(n for n in names if names.count(n) > 1)}'.")

@@ -1,0 +1,76 @@
+"""Bezier patches as plain data for the browser: the control net, and where vertices hang on it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["ORDER", "attached_rows", "net_data", "shared_patches"]
+
+ORDER = ("300", "210", "201", "120", "111", "102", "030", "021", "012", "003")
+"""Control points in the order of the shader: exponents of the barycentric coordinates."""
+
+
+def net_data(net: Any, control_mm: npt.ArrayLike, exponents: npt.ArrayLike) -> dict[str, Any]:
+    """Return the control net of all patches: its points at rest, and how markers move each.
+
+    Parameters
+    ----------
+    net : csr (10 n_patches, n_markers)
+        Control points = net @ markers, ten rows a patch.
+    control_mm : (n_patches, 10, 3), mm
+        At rest.
+    exponents : (10, 3)
+        Exponents of the barycentric coordinates of the ten rows.
+    """
+    names = ["".join(str(int(e)) for e in row) for row in np.asarray(exponents)]
+    order = np.array([names.index(name) for name in ORDER])
+    control = np.asarray(control_mm, np.float32)[:, order]
+    rows = (10 * np.arange(len(control))[:, None] + order).ravel()
+    sorted_net = net[rows]
+    return {
+        "k": int(sorted_net.shape[1]),
+        "rest": np.ascontiguousarray(control).tobytes(),
+        "start": np.asarray(sorted_net.indptr, np.uint32).tobytes(),
+        "index": np.asarray(sorted_net.indices, np.uint32).tobytes(),
+        "weight": np.asarray(sorted_net.data, np.float32).tobytes(),
+    }
+
+
+def attached_rows(
+    n: int,
+    rows: npt.ArrayLike,
+    patch: npt.ArrayLike,
+    bary: npt.ArrayLike,
+    offset: npt.ArrayLike,
+    weight: npt.ArrayLike,
+) -> npt.NDArray[np.float32]:
+    """Return the attachment of n vertices, (n, 8): patch, l0, l1, weight, along u, v and the normal, 0.
+
+    Parameters
+    ----------
+    n : int
+        Vertices of the actor; those that `rows` leaves out rest.
+    rows : (m,)
+        Which of them hang on patches.
+    patch : (m,)
+    bary : (m, 3)
+    offset : (m, 3)
+        Along dB/dl0 - dB/dl2, dB/dl1 - dB/dl2, and the unit normal (mm).
+    weight : (m,)
+        Share of the motion, 0 to 1.
+    """
+    out = np.zeros((n, 8), np.float32)
+    rows = np.asarray(rows)
+    out[rows, 0] = patch
+    out[rows, 1:3] = np.asarray(bary)[:, :2]
+    out[rows, 3] = weight
+    out[rows, 4:7] = offset
+    return out
+
+
+def shared_patches(of: str, attached: npt.NDArray[np.float32]) -> dict[str, Any]:
+    """Return the patches of an actor that hangs on those of another."""
+    return {"of": of, "attached": attached.tobytes()}
