@@ -40,7 +40,8 @@ from corpus_tools.pipeline import (
     prepare_head,
     synthesise,
 )
-from workbench.views.face import head_actors, head_camera
+from workbench.views.face import head_camera
+from workbench.views.head_actors import head_actors
 from workbench.views.mesh_view import MeshView
 from workbench.views.transport import Transport
 
@@ -118,8 +119,8 @@ pd.DataFrame(
 # ## The head
 #
 # The view is drawn by the browser: drag to turn the head, press play to hear the sentence and see it move.
-# Only the displacements of the markers are sent; the deformer's basis, which the view holds, makes the skin
-# of them.
+# Only the displacements of the markers are sent; the patches (or the basis) of the deformer, which the view
+# holds, make the skin of them.
 
 # %%
 rest_mm = head.mesh.vertices_mm[[head.mesh.markers[name] for name in head.names]]
@@ -129,8 +130,9 @@ view.show_actors(head_actors(head.mesh, head.binding), camera=head_camera(head.m
 
 def show(motion: Animation) -> None:
     """Let the head in the view move as `motion` says."""
-    skin = {actor["name"]: motion.targets_mm - rest_mm for actor in view.actors if actor["basis"]}
-    view.set_motion(config.alignment.rate_hz, displacements=skin, rigid=motion.rigid)
+    moving = [actor["name"] for actor in view.actors if actor["basis"] or actor["patches"]]
+    shift = dict.fromkeys(moving, motion.targets_mm - rest_mm)
+    view.set_motion(config.alignment.rate_hz, displacements=shift, rigid=motion.rigid)
 
 
 show(synthesis.animation)

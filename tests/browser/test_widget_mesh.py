@@ -246,19 +246,6 @@ def test_a_view_that_goes_away_gives_its_context_back(serve, browser_page):
     assert browser_page.evaluate("() => kept.vsw.clock.views.size") == 0
 
 
-def test_a_lost_context_comes_back_with_the_same_picture(serve, browser_page):
-    actor = {**plane(color="red"), "basis": np.eye(25, dtype=np.float32).tobytes()}
-    shown = Shown(serve, browser_page, single(actor))
-    shown.call(lambda: shown.view.set_motion(1.0, displacements={"plate": np.full((1, 25, 3), 0.3)}))
-    shown.until("v.ack >= 1")
-    before = shown.get("v.hash()")
-    shown.get('(v.loser = v.scene.gl.getExtension("WEBGL_lose_context")).loseContext()')
-    shown.until("v.lost")
-    shown.get("v.loser.restoreContext()")
-    shown.until("!v.lost")
-    assert shown.get("v.hash()") == before
-
-
 def test_a_browser_without_webgl2_says_why(serve, browser_page):
     browser_page.add_init_script(
         """const real = HTMLCanvasElement.prototype.getContext;

@@ -145,7 +145,7 @@ export class Scene {
     const toEye = place ? multiply(view, place) : view;
     gl.bindVertexArray(actor.array);
     if (!actor.coloured) gl.vertexAttrib4f(0, 1, 1, 1, 1);
-    const tint = actor.coloured || actor.table ? [1, 1, 1] : spec.colour;
+    const tint = actor.coloured ? [1, 1, 1] : spec.colour;
     gl.uniform4f(at.tint, ...tint, actor.opacity);
     gl.uniform4f(at.material, ...spec.material);
     gl.uniformMatrix4fv(at.toEye, false, toEye);

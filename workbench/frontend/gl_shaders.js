@@ -38,7 +38,7 @@ void main() {
 /**
  * A vertex on a cubic Bezier triangle (paper A, equation 3): the point, both tangents and the normal of the
  * patch by de Casteljau, the vertex's offsets along them, and how much of that it follows. Row y of `net` has
- * the ten control points of patch y: 300 210 201 120 111 102 030 021 012 003.
+ * the ten control points of patch y: 300, and, told from it, 210 201 120 111 102 030 021 012 003.
  */
 export const PATCH_FRAGMENT = `#version 300 es
 precision highp float;
@@ -48,7 +48,7 @@ precision highp sampler2DArray;
 uniform sampler2D rest, net;
 uniform sampler2DArray attached;  // (patch, l0, l1, weight), (along u, along v, along the normal, -)
 out vec4 position;
-const float PARALLEL = 1e-24;
+const float PARALLEL = 1e-10;  // square of an area, mm^4
 void main() {
   ivec2 vertex = ivec2(gl_FragCoord.xy);
   vec3 still = texelFetch(rest, vertex, 0).xyz;
@@ -59,7 +59,9 @@ void main() {
   vec3 l = vec3(on.yz, 1.0 - on.y - on.z);
   int row = int(on.x + 0.5);
   vec3 b[10];
-  for (int i = 0; i < 10; i++) b[i] = texelFetch(net, ivec2(i, row), 0).xyz;
+  for (int i = 1; i < 10; i++) b[i] = texelFetch(net, ivec2(i, row), 0).xyz;
+  b[0] = vec3(0.0);
+  vec3 origin = texelFetch(net, ivec2(0, row), 0).xyz;
   vec3 c200 = l.x * b[0] + l.y * b[1] + l.z * b[2];
   vec3 c110 = l.x * b[1] + l.y * b[3] + l.z * b[4];
   vec3 c101 = l.x * b[2] + l.y * b[4] + l.z * b[5];
@@ -75,7 +77,7 @@ void main() {
   float square = dot(n, n);
   n *= square > PARALLEL ? inversesqrt(square) : 0.0;
   vec3 moved = l.x * x + l.y * y + l.z * z + off.x * u + off.y * v + off.z * n;
-  position.xyz = mix(still, moved, on.w);
+  position.xyz = mix(still, origin + moved, on.w);
 }`;
 
 /** Positions from a texture; the normal is the sum of the cross products of the triangles around a vertex. */
@@ -141,7 +143,7 @@ vec4 mapped(float s) {
 }
 void main() {
   vec4 base = shade * tint;
-  if (colours > 0) base *= mapped(value);
+  if (colours > 0) base = mapped(value) * vec4(1.0, 1.0, 1.0, tint.a);
   if (kind == 2) {
     pixel = base;
     return;

@@ -25,11 +25,11 @@ function makeCanvas(model) {
 
 /** Let a view hear of what changes in the browser and in Python. */
 function connect(model, canvas, box, view) {
-  canvas.addEventListener("webglcontextlost", (event) => view.contextLost(event));
-  canvas.addEventListener("webglcontextrestored", () => view.contextRestored());
+  canvas.addEventListener("webglcontextlost", (event) => view.loan.lost(event));
+  canvas.addEventListener("webglcontextrestored", () => view.loan.restored());
   const size = new ResizeObserver(() => view.resize());
   size.observe(canvas);
-  const sight = new IntersectionObserver((entries) => view.seen(entries.at(-1).isIntersecting));
+  const sight = new IntersectionObserver((entries) => view.loan.seen(entries.at(-1).isIntersecting));
   sight.observe(box);
   model.on("revision", () => view.setActors());
   model.on("motion", () => view.setMotion());

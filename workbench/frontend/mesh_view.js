@@ -1,7 +1,7 @@
 /** One mesh view: scene, camera, clock, motion, and what Python sends and is told. */
 import { Trackball } from "./camera.js";
 import { clock } from "./clock.js";
-import { give, take } from "./contexts.js";
+import { Loan } from "./contexts.js";
 import { Scene } from "./gl_scene.js";
 import { Legend } from "./legend.js";
 import { floats } from "./linalg.js";
@@ -30,9 +30,6 @@ export class View {
     this.draws = 0;
     this.lost = false;
     this.dead = false;
-    this.inSight = false;
-    /** The picture that stands in while the context is given up; null while there is one. */
-    this.still = null;
     this.ack = 0;
     /** performance.now() of the first picture, which is the time since the page was asked for. */
     this.first = 0;
@@ -54,7 +51,8 @@ export class View {
       (event) => this.pickAt(event, "picked"),
     );
     canvas.addEventListener("pointermove", (event) => this.hover(event));
-    take(this);
+    this.loan = new Loan(this);
+    this.loan.take();
     this.setActors();
     this.setCamera();
     this.setMotion();
@@ -231,50 +229,10 @@ export class View {
     this.draw();
   }
 
-  /** Whether the page shows the view just now. */
-  seen(inSight) {
-    this.inSight = inSight;
-    if (inSight) this.resume();
-  }
-
-  /** Give the context up for other views; a picture stands in. */
-  suspend() {
-    if (this.still || this.dead) return;
-    give(this);
-    this.draw(true);
-    this.still = document.createElement("img");
-    this.still.style.cssText = "position:absolute;inset:0;width:100%;height:100%";
-    this.still.alt = `${this.model.description} (a still picture: click to go on)`;
-    if (this.canvas.width && this.draws) this.still.src = this.canvas.toDataURL();
-    this.still.addEventListener("pointerdown", () => this.resume());
-    this.box.append(this.still);
-    this.lost = true;
-    this.loser = this.scene.gl.getExtension("WEBGL_lose_context");
-    this.loser?.loseContext();
-  }
-
-  /** Take a context again. */
-  resume() {
-    if (!this.still || this.dead) return;
-    if (this.scene.gl.isContextLost() && this.allowed) this.loser.restoreContext();
-    else this.wanted = true;
-  }
-
-  /** The context is gone: given up, or taken by the browser, which may give it back. */
-  contextLost(event) {
-    event.preventDefault();
-    this.lost = this.allowed = true;
-    give(this);
-    if (this.wanted) setTimeout(() => this.resume());
-  }
-
-  contextRestored() {
-    if (this.dead) return;
+  /** Begin anew in a context that has nothing in it. */
+  rebuild() {
     this.scene = new Scene(this.canvas);
-    this.lost = this.allowed = this.wanted = false;
-    this.still?.remove();
-    this.still = null;
-    take(this);
+    this.lost = false;
     this.build();
   }
 
@@ -299,7 +257,7 @@ export class View {
   dispose() {
     this.dead = true;
     this.off();
-    give(this);
+    this.loan.give();
     for (const asked of [this.asked, this.hovering]) cancelAnimationFrame(asked);
     clearTimeout(this.resting);
     this.trackball.dispose();

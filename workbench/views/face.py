@@ -1,4 +1,4 @@
-"""The moving head of a result: parts as pyvista surfaces, skin by the deformer's basis, jaw parts rigid."""
+"""The moving head of a result: skin by patches or a basis, jaw parts rigid, and overlays that show how."""
 
 from __future__ import annotations
 
@@ -6,39 +6,26 @@ from typing import Any
 
 import numpy as np
 import panel as pn
+import param
 import pyvista.plotting
 
 from corpus_tools.core import Mesh
-from corpus_tools.mesh import Binding, mesh_by_name_or_file
+from corpus_tools.mesh import PatchBinding, mesh_by_name_or_file
 from corpus_tools.pipeline import Head
-from corpus_tools.render import PART_STYLES, part_surface
 from workbench.state import Result
+from workbench.views.head_actors import OVERLAYS, head_actors
 from workbench.views.mesh_view import MeshView
-from workbench.views.scene_actors import surface_actor
 
-__all__ = ["Face", "head_actors", "head_camera"]
+__all__ = ["Face", "head_camera", "head_motion"]
 
 # pyvista loads its names when they are first asked for, which two sessions must not do at once
 assert pyvista.plotting
-_OTHER = {"color": "#c8c8c8", "ambient": 0.3, "diffuse": 0.7}
+_NAMES = {"markers": ["markers"], "surface": ["surface", "edges"], "attachment": ["attachment"]}
+GLASS = {"surface": 0.45, "attachment": 0.72}
+"""Opacity of the skin over a control surface, and over lines that end below it."""
 _VIEW_ANGLE_DEG = 20.0
 _AROUND_DEG = 22.0
 _ABOVE_DEG = 3.0
-
-
-def head_actors(mesh: Mesh, binding: Binding | None = None) -> list[dict[str, Any]]:
-    """Return one actor for every part of a mesh; those that a binding moves carry their rows of its basis."""
-    found = []
-    for part in mesh.part_names:
-        surface = part_surface(mesh, part)
-        basis = np.zeros(0)
-        if binding is not None:
-            basis = binding.response(np.asarray(surface.point_data["vertex"]))
-        style: dict[str, Any] = dict(PART_STYLES.get(part, _OTHER))
-        if "colour" in surface.point_data:
-            style["colours"] = np.asarray(surface.point_data["colour"])
-        found.append(surface_actor(part, surface, basis=basis if basis.any() else None, **style))
-    return found
 
 
 def head_camera(mesh: Mesh) -> dict[str, Any]:
@@ -69,12 +56,17 @@ class Face(pn.viewable.Viewer):
         "light" or "dark".
     """
 
+    show_markers = param.Boolean(default=False, doc="The markers, as dots.")
+    show_surface = param.Boolean(default=False, doc="The control surface under a translucent skin.")
+    show_attachment = param.Boolean(default=False, doc="Lines from the vertices to the patches they hang on.")
+
     def __init__(self, clock: str, theme: str, **params: Any) -> None:
         super().__init__(**params)
         self._head: Head | None = None
         self.result: Result | None = None
         self.mesh_view = MeshView(session=clock, theme=theme, description="Talking head")
         self.view = self.mesh_view
+        self.param.watch(self._overlay, [f"show_{what}" for what in OVERLAYS])
 
     @property
     def theme(self) -> str:
@@ -84,6 +76,11 @@ class Face(pn.viewable.Viewer):
     @theme.setter
     def theme(self, theme: str) -> None:
         self.mesh_view.theme = theme
+
+    @property
+    def has_surface(self) -> bool:
+        """Whether the head on show has a control surface: it is moved by patches."""
+        return self._head is not None and isinstance(self._head.binding, PatchBinding)
 
     def show_rest(self, name: str) -> None:
         """Show a head by name at rest, before there is anything that moves it."""
@@ -95,18 +92,63 @@ class Face(pn.viewable.Viewer):
         self.result = result
         if result.head is not self._head:
             self._head = result.head
-            self.mesh_view.show_actors(
-                head_actors(result.head.mesh, result.head.binding), camera=head_camera(result.head.mesh)
-            )
-        parts = {actor["name"] for actor in self.mesh_view.actors}
-        moving = {a["name"] for a in self.mesh_view.actors if a["basis"]}
-        trajectory = result.trajectory
+            mesh = result.head.mesh
+            self.mesh_view.show_actors(head_actors(mesh, result.head.binding), camera=head_camera(mesh))
+            self._show_overlays()
+        self._move()
+
+    def _move(self) -> None:
+        if self.result is None:
+            return
+        trajectory = self.result.trajectory
         self.mesh_view.set_motion(
             trajectory.rate_hz,
-            displacements=dict.fromkeys(moving, result.displacements_mm.astype(np.float32)),
-            rigid={part: m for part, m in result.animation.rigid.items() if part in parts},
+            **head_motion(self.result, self.mesh_view.actors),
             start_s=float(trajectory.times_s[0]),
         )
 
+    def _overlay(self, *events: Any) -> None:
+        if self._show_overlays():
+            self._move()
+
+    def _show_overlays(self) -> bool:
+        """Show and hide what is shown over the head; say whether actors were added."""
+        if self._head is None:
+            return False
+        actors, added = {a["name"]: a for a in self.mesh_view.actors}, False
+        carrier = next((name for name, a in actors.items() if a["patches"]), "")
+        for what, make in OVERLAYS.items():
+            wanted = bool(getattr(self, f"show_{what}"))
+            mine = make(self._head.binding, carrier) if wanted else []
+            fresh = [a for a in mine if a["name"] not in actors]
+            added = added or bool(fresh)
+            if fresh:
+                self.mesh_view.add_actors(fresh)
+            for name in _NAMES[what]:
+                if name in actors:
+                    self.mesh_view.set_style(name, visible=wanted)
+        if carrier:
+            glass = [opacity for what, opacity in GLASS.items() if getattr(self, f"show_{what}")]
+            self.mesh_view.set_style(carrier, opacity=min(glass, default=1.0))
+        return added
+
     def __panel__(self) -> Any:
         return self.mesh_view
+
+
+def head_motion(result: Result, actors: list[dict[str, Any]], prefix: str = "") -> dict[str, Any]:
+    """Return the motion of a result's head, for :meth:`MeshView.set_motion`, for those actors that are there.
+
+    Parameters
+    ----------
+    result : Result
+    actors : list of dict
+        Of the view.
+    prefix : str
+        As of :func:`workbench.views.head_actors.head_actors`.
+    """
+    mine = {a["name"].removeprefix(prefix): a for a in actors if a["name"].startswith(prefix)}
+    shift = result.displacements_mm.astype(np.float32)
+    moving = [a["name"] for a in mine.values() if a["basis"] or a["patches"]]
+    rigid = {prefix + part: m for part, m in result.animation.rigid.items() if part in mine}
+    return {"displacements": dict.fromkeys(moving, shift), "rigid": rigid}

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import diags_array
 
 __all__ = ["ORDER", "attached_rows", "net_data", "shared_patches"]
 
@@ -15,6 +16,8 @@ ORDER = ("300", "210", "201", "120", "111", "102", "030", "021", "012", "003")
 
 def net_data(net: Any, control_mm: npt.ArrayLike, exponents: npt.ArrayLike) -> dict[str, Any]:
     """Return the control net of all patches: its points at rest, and how markers move each.
+
+    The first point of a patch stands where it is, the other nine are told from the first.
 
     Parameters
     ----------
@@ -27,15 +30,19 @@ def net_data(net: Any, control_mm: npt.ArrayLike, exponents: npt.ArrayLike) -> d
     """
     names = ["".join(str(int(e)) for e in row) for row in np.asarray(exponents)]
     order = np.array([names.index(name) for name in ORDER])
-    control = np.asarray(control_mm, np.float32)[:, order]
-    rows = (10 * np.arange(len(control))[:, None] + order).ravel()
-    sorted_net = net[rows]
+    control = np.array(np.asarray(control_mm, float)[:, order])
+    n = len(control)
+    rows = net[(10 * np.arange(n)[:, None] + order).ravel()]
+    # float32 cannot hold a tangent of a millimetre a metre away from the origin
+    others = (np.arange(10 * n) % 10 > 0).astype(float)
+    local = (rows - diags_array(others) @ rows[10 * np.repeat(np.arange(n), 10)]).tocsr()
+    control[:, 1:] -= control[:, :1]
     return {
-        "k": int(sorted_net.shape[1]),
-        "rest": np.ascontiguousarray(control).tobytes(),
-        "start": np.asarray(sorted_net.indptr, np.uint32).tobytes(),
-        "index": np.asarray(sorted_net.indices, np.uint32).tobytes(),
-        "weight": np.asarray(sorted_net.data, np.float32).tobytes(),
+        "k": int(local.shape[1]),
+        "rest": control.astype(np.float32).tobytes(),
+        "start": np.asarray(local.indptr, np.uint32).tobytes(),
+        "index": np.asarray(local.indices, np.uint32).tobytes(),
+        "weight": np.asarray(local.data, np.float32).tobytes(),
     }
 
 

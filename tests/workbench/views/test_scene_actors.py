@@ -58,7 +58,7 @@ def test_strips_are_surfaces_and_a_mixture_is_refused_by_name():
 def test_scalars_map_to_the_colours_of_pyvista(by, options):
     surface = pv.Sphere(theta_resolution=9, phi_resolution=9)
     n = surface.n_points if by == "point" else surface.n_cells
-    surface[by] = np.linspace(0.01, 1, n)
+    surface[by] = np.random.default_rng(7).uniform(0.01, 1, n)
     plotter = pv.Plotter(off_screen=True)
     bar = {"title": "Speed, mm/s"}
     added = plotter.add_mesh(surface, scalars=by, name="ball", cmap="plasma", scalar_bar_args=bar, **options)

@@ -1,0 +1,86 @@
+"""Bezier patches evaluated by the browser's GPU: the same vertices as the processor, and what shows them."""
+
+import numpy as np
+import pytest
+from browser.shown import SIZE, Shown
+
+from corpus_tools.mesh import DEFORMERS, bundled_head
+from corpus_tools.pipeline import Head
+from workbench.views.head_actors import OVERLAYS, head_actors
+from workbench.views.mesh_view import MeshView
+
+
+@pytest.fixture(scope="module")
+def heads():
+    mesh = bundled_head()
+    names = tuple(mesh.markers)
+    return {kind: Head(mesh, names, None, DEFORMERS[kind](mesh, names)) for kind in ("bid", "linear")}
+
+
+def positions(shown, name):
+    return np.array(shown.get(f'[...v.positions("{name}")]')).reshape(-1, 3)
+
+
+def test_patches_on_the_gpu_are_those_of_the_processor(heads, serve, browser_page):
+    head = heads["bid"]
+    binding, mesh = head.binding, head.mesh
+    random = np.random.default_rng(11)
+    poses = random.normal(0, 4, (6, len(head.names), 3)).astype(np.float32)
+    poses[-2] = random.normal(0, 2, 3)  # all together: a shift of the face
+    middle = binding.rest_mm.mean(axis=0)
+    poses[-1] = middle - binding.rest_mm  # all in one point: no tangents, no normal
+    made = [actor for name in OVERLAYS for actor in OVERLAYS[name](binding, "skin")]
+
+    def make():
+        view = MeshView(**SIZE)
+        view.show_actors([*head_actors(head.mesh, binding), *made])
+        moving = [a["name"] for a in view.actors if a["basis"] or a["patches"]]
+        assert moving == ["skin", "markers", "surface", "edges", "attachment"]
+        view.set_motion(120.0, displacements=dict.fromkeys(moving, poses))
+        return view
+
+    shown = Shown(serve, browser_page, make)
+    assert len(shown.view.motion["tracks"]) == 1  # sent once for all
+    skin = np.frombuffer(shown.view.actor("skin")["ids"], np.uint32)
+    wanted = binding.apply(binding.rest_mm + poses, dtype=np.float64)
+    attachment = binding.attachment
+    smooth = attachment.patch < 3 * len(binding.surface.chart.triangles)
+    sums = np.asarray(binding.surface.net.sum(axis=1)).reshape(-1, 10)
+    collapses = smooth & (np.abs(sums - 1) < 1e-9).all(axis=1)[attachment.patch] & (attachment.weight == 1)
+    still = np.setdiff1d(skin, binding.driven)
+    for frame in range(len(poses) - 1):
+        shown.get(f"v.clock.seek({frame} / 120)")
+        shown.until(f"v.shown === {frame}")
+        found = positions(shown, "skin")
+        assert np.isfinite(found).all()
+        assert np.abs(found - wanted[frame][skin]).max() < 1e-3
+        rest = mesh.vertices_mm[still].astype(np.float32)
+        np.testing.assert_array_equal(found[np.searchsorted(skin, still)], rest)
+        np.testing.assert_allclose(positions(shown, "markers"), binding.rest_mm + poses[frame], atol=1e-4)
+        ends = positions(shown, "attachment").reshape(2, -1, 3)
+        assert np.abs(ends[0] - wanted[frame][attachment.vertices[smooth]]).max() < 1e-3
+    shown.get(f"v.clock.seek({len(poses) - 1} / 120)")
+    shown.until(f"v.shown === {len(poses) - 1}")
+    found = positions(shown, "skin")
+    assert np.isfinite(found).all()
+    assert collapses.sum() > 100
+    whole = np.searchsorted(skin, attachment.vertices[collapses])
+    assert np.abs(found[whole] - middle).max() < 1e-3
+    assert np.abs(wanted[0] - mesh.vertices_mm).max() > 5
+
+
+def test_flat_triangles_are_patches_too(heads, serve, browser_page):
+    head = heads["linear"]
+    binding = head.binding
+    pose = np.random.default_rng(2).normal(0, 4, (1, len(head.names), 3)).astype(np.float32)
+
+    def make():
+        view = MeshView(**SIZE)
+        view.show_actors(head_actors(head.mesh, binding))
+        view.set_motion(120.0, displacements={"skin": pose})
+        return view
+
+    shown = Shown(serve, browser_page, make)
+    skin = np.frombuffer(shown.view.actor("skin")["ids"], np.uint32)
+    wanted = binding.apply(binding.rest_mm + pose, dtype=np.float64)[0, skin]
+    assert np.abs(positions(shown, "skin") - wanted).max() < 1e-3
