@@ -246,29 +246,6 @@ def test_a_view_that_goes_away_gives_its_context_back(serve, browser_page):
     assert browser_page.evaluate("() => kept.vsw.clock.views.size") == 0
 
 
-def test_a_browser_without_webgl2_says_why(serve, browser_page):
-    browser_page.add_init_script(
-        """const real = HTMLCanvasElement.prototype.getContext;
-        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
-          return kind === "webgl2" ? null : real.call(this, kind, ...rest); };"""
-    )
-    views = []
-
-    def make():
-        views.append(single(plane())())
-        return views[-1]
-
-    browser_page.goto(serve(make))
-    alert = browser_page.get_by_role("alert")
-    alert.wait_for()
-    assert alert.inner_text() == "The 3-D view cannot be shown: this browser offers no WebGL2."
-    for _ in range(200):
-        if views[-1].unavailable:
-            break
-        browser_page.wait_for_timeout(20)
-    assert views[-1].unavailable == "this browser offers no WebGL2"
-
-
 def test_resize_keeps_the_whole_canvas_drawn(serve, browser_page):
     shown = Shown(serve, browser_page, single(plane(color="red"), width=300, height=200))
     assert shown.get("[v.canvas.width, v.canvas.height]") == [300, 200]

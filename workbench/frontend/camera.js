@@ -39,6 +39,7 @@ export class Trackball {
   }
 
   grab(event) {
+    if (!this.camera) return;
     const pan = event.button !== 0 || event.shiftKey;
     this.drag = { x: event.clientX, y: event.clientY, pan, far: 0, first: !pan };
     this.canvas.setPointerCapture(event.pointerId);
@@ -97,6 +98,7 @@ export class Trackball {
 
   wheel(event) {
     event.preventDefault();
+    if (!this.camera) return;
     this.dolly(Math.exp(event.deltaY * DOLLY_PER_PX));
     this.changed(false);
     clearTimeout(this.timer);
@@ -104,7 +106,7 @@ export class Trackball {
   }
 
   key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || !this.camera) return;
     const act = {
       r: () => (this.camera = this.home()),
       ArrowLeft: () => this.turn(TURN, 0),

@@ -4,15 +4,7 @@
  * draws. Without WebGL2 the server draws pictures in its place.
  */
 import { View } from "./mesh_view.js";
-
-function refuse(box, model, reason) {
-  const text = `The 3-D view cannot be shown: ${reason}.`;
-  box.textContent = text;
-  box.setAttribute("role", "alert");
-  box.style.cssText += "display:grid;place-content:center;padding:16px;color:var(--vsw-ink2)";
-  model.send_msg({ type: "unavailable", reason });
-  return box;
-}
+import { Stills } from "./stills.js";
 
 function makeCanvas(model) {
   const canvas = document.createElement("canvas");
@@ -61,7 +53,8 @@ export function renderMesh({ model, el }) {
   try {
     view = new View(model, canvas, box);
   } catch (error) {
-    return refuse(box, model, error.message);
+    new Stills(model, box, error.message);
+    return box;
   }
   canvas.vsw = view;
   connect(model, canvas, box, view);

@@ -19,6 +19,7 @@ from workbench.views.motion_data import motion_data
 from workbench.views.plotter_scene import camera_of, lights_of, plotter_actors
 from workbench.views.scalars import scalar_colours
 from workbench.views.scene_actors import DEFAULT_LIGHTS
+from workbench.views.stills import Stills
 from workbench.views.theme import palettes, style_sheet
 
 __all__ = ["MeshView"]
@@ -73,6 +74,7 @@ class MeshView(pn.custom.JSComponent):
     ) -> None:
         self._line = LatestWins(self._deliver)
         self._told: dict[tuple[str, str], dict[str, Any]] = {}
+        self._stills: Stills | None = None
         super().__init__(**{"sizing_mode": "stretch_both", "palettes": palettes(), **params})
         if scene is not None:
             self.show_scene(scene, bases)
@@ -241,7 +243,10 @@ class MeshView(pn.custom.JSComponent):
         self._tell(kind, name, n=number, **change)
 
     def _tell(self, kind: str, name: str, **values: Any) -> None:
-        """Send a change of an actor, and keep it for whoever renders the view later."""
+        """Send a change of an actor, and keep it for whoever renders the view later, or in its place."""
+        for actor in self.actors:
+            if actor["name"] == name:
+                actor.update({key: values[key] for key in ("points", "scalars") if key in values})
         self._told[kind, name] = message = {"type": kind, "actor": name, **values}
         self._send_msg(message)
 
@@ -258,6 +263,30 @@ class MeshView(pn.custom.JSComponent):
             self.param.update(**{data["what"]: self._named(data["found"])})
         elif data["type"] == "unavailable":
             self.unavailable = str(data["reason"])
+        elif data["type"] == "moment":
+            self._draw_for(data)
+        elif data["type"] == "gone" and self._stills is not None:
+            self._stills.close()
+            self._stills = None
+
+    def _draw_for(self, moment: Any) -> None:
+        """Draw a picture for a browser that cannot, and send it when it is there."""
+        self._stills = self._stills or Stills()
+        scene = {key: getattr(self, key) for key in ("lights", "motion", "camera", "revision")}
+        scene["actors"] = [dict(actor) for actor in self.actors]
+        scene["ground"] = self.ground or self.palettes[self.theme]["view"]
+        doc = pn.state.curdoc
+
+        def reply(**answer: Any) -> None:
+            def send() -> None:
+                self._send_msg({"type": "picture", **answer})
+
+            if doc is not None and doc.session_context:
+                doc.add_next_tick_callback(send)
+            else:
+                send()
+
+        self._stills.ask(scene, moment, reply)
 
     def _named(self, found: Any) -> dict[str, Any]:
         """Return what was picked, with the number and the label that the actor gives its points."""
