@@ -8,7 +8,7 @@ import numpy.typing as npt
 from corpus_tools.core import FloatArray, IntArray, Mesh
 from corpus_tools.mesh import SkinRegion, skin_regions
 
-__all__ = ["part_colours"]
+__all__ = ["LIMBUS", "part_colours"]
 
 Colours = npt.NDArray[np.float32]
 
