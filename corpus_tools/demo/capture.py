@@ -17,6 +17,10 @@ __all__ = ["UNDISTURBED", "Disturbances", "Seen", "disturb"]
 SLIP_S = 0.08
 """How long the jig takes to slip, s."""
 
+SWAPS_FROM = 0.55
+"""Share of a recording after which markers may be exchanged (our choice: after the words that all sentences
+of the domain share; in those one swap would be seen in every fifth sentence that is put together)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Disturbances:
@@ -34,7 +38,7 @@ class Disturbances:
     spike_mm : (float, float)
         How far, mm.
     swap_chance : float
-        Chance of a recording that two neighbouring markers exchange their names for a while.
+        Chance of a recording that two neighbouring markers exchange their names for 4-16 frames.
     n_gaps : float
         Short occlusions (3-12 frames) of one marker: their mean number in a recording.
     long_chance, cluster_chance, jig_chance : float
@@ -50,7 +54,7 @@ class Disturbances:
     sensor_mm: float = 0.05
     spike_share: float = 2e-4
     spike_mm: tuple[float, float] = (1.5, 6.0)
-    swap_chance: float = 0.06
+    swap_chance: float = 0.05
     n_gaps: float = 2.0
     long_chance: float = 0.15
     cluster_chance: float = 0.2
@@ -168,9 +172,9 @@ def _swap(positions: FloatArray, how: Disturbances, rng: np.random.Generator) ->
     """Exchange two neighbours of one region for a while, in place; return where."""
     n, m = positions.shape[:2]
     swapped = np.zeros((n, m), bool)
-    happens, one = rng.random() < how.swap_chance, int(rng.integers(len(_neighbours())))
-    length = min(int(rng.integers(8, 37)), n)
-    start = int(rng.integers(n - length + 1))
+    one, length = int(rng.integers(len(_neighbours()))), min(int(rng.integers(4, 17)), n)
+    happens = rng.random() < how.swap_chance
+    start = int(rng.uniform(SWAPS_FROM, 1.0) * (n - length + 1))
     if happens:
         region = marker_names()[one].rstrip("0123456789")
         other = next(j for j in _neighbours()[one] if marker_names()[j].startswith(region))

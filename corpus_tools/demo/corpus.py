@@ -180,6 +180,7 @@ def simulate_corpus(
     *,
     layout: str = "full",
     voice: Voice | None = None,
+    how: Disturbances | None = None,
 ) -> CorpusDescription:
     """Write a simulated corpus; equal arguments give equal bytes.
 
@@ -188,7 +189,7 @@ def simulate_corpus(
     folder : path
         Made when it does not exist; nothing remains of it when the work is interrupted.
     n_sentences : int
-        The first 34 cover the diphones of the domain, best first; the rest are random.
+        The first (about 30) cover the diphones of the domain, best first; the rest are random.
     seed : int
     progress : callable, optional
         ``progress(fraction, what)``; may raise to cancel.
@@ -196,6 +197,8 @@ def simulate_corpus(
         Which markers there are: "full" (66 on the face, 7 on the head) or "outer-lips".
     voice : Voice, optional
         The embedded one, where it is installed; the README says which spoke.
+    how : Disturbances, optional
+        What the capture adds to the truth.
 
     Raises
     ------
@@ -210,7 +213,7 @@ def simulate_corpus(
         for index, sentence in enumerate(covering_sentences(n_sentences, np.random.default_rng(seed))):
             report(index / n_sentences, f"simulating sentence {index + 1} of {n_sentences}")
             rng = np.random.default_rng([seed, index])
-            made = simulate_sentence(sentence, rng, voice=speaker, layout=layout)
+            made = simulate_sentence(sentence, rng, how, speaker, layout)
             name = f"time{index + 1:02d}"
             _write(out, name, made)
             events += _events(name, made)

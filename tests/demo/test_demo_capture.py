@@ -112,7 +112,7 @@ def test_the_head_moves_rigidly_slowly_and_no_farther_than_asked(face):
 
 def test_a_slipping_jig_moves_1_5_mm_against_the_skull_and_stays_there(face):
     assert Disturbances().slip_mm == 1.5
-    assert 0.0 < Disturbances().slip_chance < 1.0
+    assert 0.0 < Disturbances().slip_chance < 0.5
     seen = see(face, 4, slip_chance=1.0, slip_mm=1.5)
     np.testing.assert_allclose(seen.positions_mm[:, :66], face, atol=1e-9)
     moved = np.linalg.norm(seen.positions_mm[:, 66:] - seen.positions_mm[0, 66:], axis=2)
@@ -142,7 +142,7 @@ def test_a_swap_exchanges_two_neighbours_of_one_region_for_a_while(talking):
         seen = see(talking, seed, swap_chance=1.0)
         one, other = np.flatnonzero(seen.swapped.any(axis=0))
         frames = np.flatnonzero(seen.swapped.any(axis=1))
-        assert 8 <= len(frames) == np.ptp(frames) + 1 <= 36
+        assert 4 <= len(frames) == np.ptp(frames) + 1 <= 16
         kinds = {marker_names()[i].rstrip("0123456789") for i in (one, other)}
         assert len(kinds) == 1
         regions |= kinds

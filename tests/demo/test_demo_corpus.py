@@ -9,14 +9,18 @@ from scipy.spatial.transform import Rotation
 from corpus_tools.cleaning import clean_captures
 from corpus_tools.core import InputError, OutputError
 from corpus_tools.demo import (
+    DIMENSIONS,
     UNDISTURBED,
     VERSION,
     VOICES,
+    Disturbances,
+    disturb,
     marker_names,
     read_truth,
     simulate_corpus,
     simulate_sentence,
     time_grammar,
+    true_markers,
 )
 from corpus_tools.fragments import coverage
 from corpus_tools.io import find_recordings, load_capture, load_labels, read_description
@@ -74,17 +78,33 @@ def test_the_corpus_says_that_it_is_simulated_wherever_it_is_shown(simulated_cor
     assert "simulated" in health_lines(check_corpus(simulated_corpus))[0]
 
 
-def test_the_readme_lists_what_went_wrong_in_each_recording(simulated_corpus):
-    told = (simulated_corpus / "README.txt").read_text()
-    slips = swaps = 0
-    for path in sorted((simulated_corpus / "truth").iterdir()):
+def test_the_readme_lists_what_went_wrong_in_each_recording(tmp_path):
+    how = Disturbances(swap_chance=0.5, slip_chance=0.5)
+    simulate_corpus(tmp_path / "c", n_sentences=8, voice=VOICES["formants"], how=how)
+    told = (tmp_path / "c" / "README.txt").read_text().splitlines()
+    slips, swaps = set(), set()
+    for path in (tmp_path / "c" / "truth").iterdir():
         truth = read_truth(path)
-        slipped = np.isfinite(truth.slip_s)
-        assert (f"{path.stem}: the jig slips" in told) == slipped
-        assert (f"{path.stem}: " in told.replace(f"{path.stem}: the jig", "")) == bool(truth.swapped.any())
-        slips, swaps = slips + slipped, swaps + truth.swapped.any()
-    assert slips > 0
-    assert swaps > 0
+        if np.isfinite(truth.slip_s):
+            slips.add(f"  {path.stem}: the jig slips at {truth.slip_s:.2f} s")
+        if truth.swapped.any():
+            pair = " and ".join(np.array(truth.names)[truth.swapped.any(axis=0)])
+            frames = np.flatnonzero(truth.swapped.any(axis=1))
+            swaps.add(f"  {path.stem}: {pair} exchanged in frames {frames[0]}-{frames[-1]}")
+    assert slips == {line for line in told if "slips" in line and ": the jig" in line}
+    assert swaps == {line for line in told if "exchanged" in line}
+    assert 0 < len(slips) < 8
+    assert 0 < len(swaps) < 8
+
+
+def test_the_demo_has_a_few_recordings_with_a_swap_and_a_few_with_a_slip():
+    """Which they are does not depend on what is said, only on how many frames there are."""
+    face = true_markers(np.zeros((400, len(DIMENSIONS))))
+    seen = [disturb(face, 120.0, np.random.default_rng([0, i]).spawn(3)[2]) for i in range(55)]
+    assert 1 <= sum(s.swapped.any() for s in seen) <= 5
+    assert 5 <= sum(np.isfinite(s.slip_s) for s in seen) <= 12
+    share = np.mean([s.spiked.mean() for s in seen])
+    assert share == pytest.approx(Disturbances().spike_share, rel=0.2)
 
 
 def test_recordings_fit_together(simulated_corpus):

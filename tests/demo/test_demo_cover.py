@@ -62,6 +62,16 @@ def test_cover_is_better_than_chance():
     assert len(covered(covering_sentences(10, np.random.default_rng(0)))) > max(random)
 
 
+def test_the_examples_of_the_paper_are_left_to_be_synthesised():
+    examples = {
+        "the time is now exactly one in the afternoon",
+        "the time is now quarter to ten in the morning",
+    }
+    chosen = [s.text for s in covering_sentences(2880, np.random.default_rng(0))]
+    assert set(chosen[-2:]) == examples
+    assert len(set(chosen)) == 2880
+
+
 @pytest.mark.parametrize("n", [0, -1, 2881])
 def test_numbers_of_sentences_that_there_are_not_are_refused(n):
     with pytest.raises(InputError, match="2880"):
