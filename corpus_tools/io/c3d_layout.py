@@ -20,9 +20,6 @@ __all__ = ["C3dHeader", "Parameters", "c3d_header", "c3d_parameters", "c3d_point
 BLOCK = 512
 _SIGN = 0x50
 _INTEL, _DEC, _SGI = 84, 85, 86
-_LARGEST_PARAMETERS = 1 << 20
-"""Bytes; the format counts at most 255 blocks of 512, some programs write more (our choice)."""
-
 _TYPES = {-1: 1, 1: 1, 2: 2, 4: 4}
 
 Value = list[str] | list[float]
@@ -99,10 +96,9 @@ def decoded(raw: bytes) -> str:
     """Return a text of a C3D file, padding gone; UTF-8, or else Latin-1, which the format leaves open."""
     raw = raw.replace(b"\0", b" ").strip()
     try:
-        text = raw.decode("utf-8")
+        return raw.decode("utf-8")
     except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    return text if text.isprintable() else "".join(c for c in text if c.isprintable())
+        return raw.decode("latin-1")
 
 
 def c3d_parameters(data: bytes, header: C3dHeader) -> Parameters:
@@ -117,10 +113,7 @@ def c3d_parameters(data: bytes, header: C3dHeader) -> Parameters:
     groups: dict[int, str] = {}
     found: list[tuple[int, str, Value]] = []
     try:
-        end = at + _LARGEST_PARAMETERS
         while data[at]:
-            if at > end:
-                raise MotionError("its parameters do not end: it is damaged")
             size, group = abs(struct.unpack_from("b", data, at)[0]), struct.unpack_from("b", data, at + 1)[0]
             if not group:
                 break

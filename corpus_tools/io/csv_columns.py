@@ -54,7 +54,7 @@ class Columns:
         found = self.axes.setdefault(name, {})
         if axis in found:
             raise MotionError(
-                f"'{path}' has two columns for {axis} of '{name[:40]}'; rename one of the markers."
+                f"'{path}' has two columns for {axis} of '{name}' ({match[0]}); rename one of the markers."
             )
         found[axis] = index
         self.units |= {u.lower() for u in (match["unit"], match["word"]) if u}
@@ -70,7 +70,7 @@ class Columns:
         for name, found in self.axes.items():
             lacking = [a for a in "xyz" if a not in found]
             if lacking:
-                of = f"marker '{name[:40]}' has" if name else "there is"
+                of = f"marker '{name}' has" if name else "there is"
                 raise MotionError(
                     f"'{path}': {of} no column for {' and '.join(lacking)}; x, y and z were expected."
                 )

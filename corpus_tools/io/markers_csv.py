@@ -90,8 +90,7 @@ def _capture(
         _note_start(float(raw.clock[0, 0]), rate, notes)
     stated = unit or columns.stated_unit(path)
     factor = unit_factor(path, stated, units, notes, default="mm")
-    with np.errstate(over="ignore"):  # infinite then, and refused as such
-        positions = placed(path, raw.positions, frames, notes) * factor
+    positions = placed(path, raw.positions, frames, notes) * factor
     if not stated and not units:
         _note_size(positions, notes)
     settings = {"columns_left_out": ", ".join(columns.others)[:200]} if columns.others else {}

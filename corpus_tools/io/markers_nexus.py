@@ -66,7 +66,7 @@ def read_nexus(table: Table, *, rate_hz: float | None = None, units: str = "") -
     head = table.rows[title + 1 : title + 5]
     if len(head) == 4 and _is_frame(head[3]):
         head[3] = []  # a row of blank units is none
-    start = title + (4 if head and not head[-1] else 5)
+    start = title + (5 if head[-1] else 4)
     try:
         if len(head) < 4 or head[2][0].lower() != "frame":
             raise MotionError("its head is not whole")

@@ -12,7 +12,7 @@ from corpus_tools.core import Capture, FloatArray, MotionError, atomic_file
 from corpus_tools.io.formats import MOTION_READERS, MOTION_WRITERS
 from corpus_tools.io.motion_clock import frames_of_times, placed
 from corpus_tools.io.motion_parts import Notes, capture_of, chosen_rate, unit_factor
-from corpus_tools.io.table import Table, decimals, numbers, plain, text_of
+from corpus_tools.io.table import Table, decimals, numbers, text_of
 from corpus_tools.io.writing import checked_motion
 
 __all__ = ["read_trc", "write_trc"]
@@ -86,7 +86,7 @@ def _capture(path: Path, table: Table, rate_hz: float | None, units: str) -> Cap
 def _table(path: Path, lines: Sequence[str], delimiter: str) -> Table:
     """Return the rows that hold anything, cells split at every single delimiter."""
     rows = [(i, line.split(delimiter)) for i, line in enumerate(lines, 1) if line.strip(delimiter + " ")]
-    return Table(path, [[plain(c) for c in row] for _, row in rows], [i for i, _ in rows], delimiter)
+    return Table(path, [[c.strip() for c in row] for _, row in rows], [i for i, _ in rows], delimiter)
 
 
 def _refuse_other_delimiters(lines: Sequence[str]) -> None:

@@ -19,10 +19,6 @@ SPARSEST = 4
 """So many times more frames than rows are refused: such a file is no continuous recording (our choice)."""
 
 
-_LATEST_S, _SHORTEST_S = 1e11, 1e-7
-"""What a time and a step of a recording can be, s (our choice: an epoch in ms is still one)."""
-
-
 def frames_of_times(
     path: Path, times_s: FloatArray, n_decimals: int, lines: Sequence[int]
 ) -> tuple[IntArray, float | None]:
@@ -50,11 +46,6 @@ def frames_of_times(
     if len(times_s) < 2:
         return np.zeros(len(times_s), np.int64), None
     steps = np.diff(times_s)
-    if np.abs(times_s).max() > _LATEST_S or 0 < steps.min() < _SHORTEST_S:
-        raise MotionError(
-            f"'{path}' has times from {times_s.min():g} to {times_s.max():g} s in steps of "
-            f"{steps.min():g} s: times of a recording in seconds were expected."
-        )
     if (steps <= 0).any():
         at = int(np.argmax(steps <= 0)) + 1
         raise MotionError(

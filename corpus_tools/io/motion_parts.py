@@ -129,7 +129,7 @@ def _check(path: Path, positions: FloatArray, names: Sequence[str]) -> None:
     twice = [n for n, count in Counter(names).items() if count > 1]
     if twice:
         raise MotionError(
-            f"'{path}': the marker name '{twice[0][:40]}' stands more than once; rename one of them."
+            f"'{path}' : the marker name '{twice[0]}' stands more than once; rename one and export it again."
         )
     if not names:
         raise MotionError(f"'{path}' holds no marker that has a name; label them and export again.")
@@ -138,7 +138,7 @@ def _check(path: Path, positions: FloatArray, names: Sequence[str]) -> None:
     frames, markers, _ = np.nonzero(np.isinf(positions))
     if len(frames):
         raise MotionError(
-            f"'{path}': marker '{names[markers[0]][:40]}' is infinitely far off in frame {frames[0]}; "
+            f"'{path}': marker '{names[markers[0]]}' is infinitely far off in frame {frames[0]}; "
             "a missing position must be left blank or NaN."
         )
 

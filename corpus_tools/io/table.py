@@ -12,7 +12,7 @@ import numpy as np
 
 from corpus_tools.core import FloatArray, MotionError
 
-__all__ = ["Table", "decimals", "is_missing", "numbers", "plain", "read_table", "text_of"]
+__all__ = ["Table", "decimals", "is_missing", "numbers", "read_table", "text_of"]
 
 _MISSING = frozenset(("", "na", "nan", "n/a", "null", "none", "-", "#n/a"))
 _DELIMITERS = ";\t,"
@@ -63,13 +63,6 @@ def _delimiter(text: str) -> str:
     return ","
 
 
-def plain(cell: str) -> str:
-    """Return a cell on one line, without characters that cannot be printed."""
-    return (
-        cell.strip() if cell.isprintable() else "".join(c for c in " ".join(cell.split()) if c.isprintable())
-    )
-
-
 def read_table(path: Path) -> Table:
     """Read a table of text.
 
@@ -85,7 +78,7 @@ def read_table(path: Path) -> Table:
     try:
         for row in reader:
             if any(cell.strip() for cell in row):
-                rows.append([plain(cell) for cell in row])
+                rows.append([cell.strip() for cell in row])
                 lines.append(reader.line_num)
     except csv.Error as error:
         raise MotionError(f"'{path}', line {reader.line_num + 1}: {error}; check its quotes.") from None

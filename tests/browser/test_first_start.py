@@ -31,7 +31,7 @@ def started(tmp_path):
     server.stop()
 
 
-def test_the_head_is_there_at_once_and_space_alone_plays(browser_page, started):
+def test_the_head_is_there_at_once_and_space_alone_plays(started, browser_page):
     url, go = started
     browser_page.goto(url)
     browser_page.wait_for_function(f"() => {FIND}?.vsw.draws > 0")
@@ -46,7 +46,7 @@ def test_the_head_is_there_at_once_and_space_alone_plays(browser_page, started):
     browser_page.wait_for_function(f"() => {FIND}.vsw.shown > 20")
 
 
-def test_escape_ends_the_making_and_leaves_the_choice(browser_page, started):
+def test_escape_ends_the_making_and_leaves_the_choice(started, browser_page):
     browser_page.goto(started[0])
     browser_page.get_by_role("progressbar", name="Progress").wait_for()
     browser_page.keyboard.press("Escape")

@@ -195,10 +195,6 @@ WRONG = {
     "only a start": (b"\2\x50" + bytes(100), "cut short"),
     "parameters outside": (b"\x90\x50" + bytes(2000), "outside the file"),
     "unknown processor": (b"\2\x50" + bytes(2000), "processor 0"),
-    "parameters without end": (
-        Made().bytes()[:516] + b"\1\1P\5\0\1\0\0" * 400_000,
-        "do not end",
-    ),
     "no points": (Made(n_points=0), "no points"),
     "no frames": (Made(first=1, last=0), "no frames"),
     "cut in the frames": (Made().bytes()[:-30], "7 frames and it holds 6"),

@@ -10,7 +10,6 @@ from scipy.io import savemat
 
 from corpus_tools.core import InputError
 from corpus_tools.io import read_audio, read_labels, read_markers
-from corpus_tools.io.mat5 import read_mat5
 
 LABELS = [("sp", (0.0, 0.1)), ("AA1", (0.1, 0.25))]
 
@@ -20,9 +19,9 @@ def channel(name, rate_hz, signal, labels=()):
     return name, float(rate_hz), signal, rows, rows[:1]
 
 
-def saved(path, channels, key="take", packed=False):
+def saved(path, channels, key="take"):
     fields = [(n, object) for n in ("NAME", "SRATE", "SIGNAL", "PHONES", "WORDS")]
-    savemat(path, {key: np.array(channels, dtype=fields)}, do_compression=packed)
+    savemat(path, {key: np.array(channels, dtype=fields)})
     return path
 
 
@@ -44,10 +43,9 @@ def refusal(read, path):
     return str(caught.value)
 
 
-@pytest.mark.parametrize("packed", [False, True])
-def test_sensors_sound_and_labels_come_from_one_file(tmp_path, packed):
+def test_sensors_sound_and_labels_come_from_one_file(tmp_path):
     held = channels()
-    path = saved(tmp_path / "a.mat", held, packed=packed)
+    path = saved(tmp_path / "a.mat", held)
     capture = read_markers(path)
     assert (capture.names, capture.rate_hz) == (("UL", "JAW"), 100.0)
     np.testing.assert_allclose(capture.positions_mm[:, 1], held[2][2][:, :3])
@@ -100,27 +98,6 @@ def test_other_matlab_files_are_refused_with_what_they_hold(tmp_path):
     assert "version 5" in refusal(read_markers, tmp_path / "b.mat")
     saved(tmp_path / "c.mat", channels()[:1])
     assert "no channel with three coordinates" in refusal(read_markers, tmp_path / "c.mat")
-
-
-def test_numbers_texts_and_structs_are_read_as_scipy_wrote_them(tmp_path):
-    numbers = {k: (np.arange(12).reshape(3, 4) - 3).astype(k) for k in ("f4", "f8", "i1", "u2", "i4", "i8")}
-    held = {f"n_{k}": v for k, v in numbers.items()} | {
-        "text": "ʃ é",
-        "cell": np.array(["a", 2.0], dtype=object),
-    }
-    for packed in (False, True):
-        savemat(tmp_path / "a.mat", held, do_compression=packed)
-        back = read_mat5((tmp_path / "a.mat").read_bytes())
-        for key, value in numbers.items():
-            np.testing.assert_array_equal(back[f"n_{key}"], value)
-        assert back["text"] == "ʃ é"
-        assert back["cell"][0] == "a"
-
-
-def test_a_file_that_unpacks_to_more_than_it_should_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("corpus_tools.io.mat5._LARGEST_BYTES", 4000)
-    savemat(tmp_path / "a.mat", {"x": np.zeros(10**6)}, do_compression=True)
-    assert "cut short" in refusal(read_markers, tmp_path / "a.mat")
 
 
 @given(data=st.data())

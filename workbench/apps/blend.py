@@ -14,10 +14,12 @@ from workbench.state import Session
 from workbench.views.bar import AppBar
 from workbench.views.controls import Controls
 from workbench.views.export_box import ExportBox
+from workbench.views.fragment_inspector import FragmentInspector
+from workbench.views.settings_panel import PRESETS, settings_panel
 from workbench.views.shell import Shell
 from workbench.views.transport import Transport
 from workbench.views.welcome import Welcome
-from workbench.views.work_board import PRESETS, BlendBoard, FragmentInspector, settings_panel
+from workbench.views.work_board import BlendBoard
 
 __all__ = ["DASHBOARDS", "BlendPage"]
 
@@ -56,7 +58,7 @@ class BlendPage:
         fill: bool = True,
         begin: str = "blend",
     ) -> None:
-        self._begin = begin
+        self._begin, self._make_on_arrival = begin, False
         self.session = Session()
         self._gate = Gate(deliver)
         self.desk = Desk(self.session, cache, self._gate)
@@ -116,6 +118,9 @@ class BlendPage:
     def arrived(self) -> None:
         """Take up what was done while the page was on its way: the browser has it."""
         self._gate.open()
+        if self._make_on_arrival:
+            self._make_on_arrival = False
+            self.open_demo()
 
     def show(self, dashboard: str) -> None:
         """Show the corpus page or the blend page; without a corpus, open or on its way, only the first."""
@@ -129,8 +134,14 @@ class BlendPage:
         self.show(self._begin)
 
     def open_demo(self) -> None:
-        """Make and open the simulated starter corpus; the head is there from the first moment."""
+        """Make and open the simulated starter corpus."""
         self.desk.make_and_open(self._make_demo)
+        self.show(self._begin)
+
+    def open_demo_later(self) -> None:
+        """Make the simulated corpus when the browser has the page: until then the page goes first."""
+        self._make_on_arrival = True
+        self.session.begin_opening("")
         self.show(self._begin)
 
     def _corpus(self, event: Any) -> None:

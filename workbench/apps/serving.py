@@ -184,7 +184,7 @@ class Workbench:
         if self.options.corpus is not None:
             made.open(self.options.corpus)
         elif self.options.demo and self.options.root is None:
-            made.open_demo()
+            made.open_demo_later()
         return made.shell
 
     def _gone(self, page: BlendPage) -> None:

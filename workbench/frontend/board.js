@@ -55,6 +55,33 @@ function sides(model) {
   return group;
 }
 
+/** What can be shown over the head: markers, control surface, attachment. */
+function overlays(model) {
+  const group = document.createElement("div");
+  group.className = "over overlays";
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", "Shown over the head");
+  const draw = () => {
+    const had = group.getRootNode().activeElement?.dataset?.id;
+    group.replaceChildren(
+      ...model.overlays.map(({ id, label, on, can }) => {
+        const button = document.createElement("button");
+        button.type = "button";
+        button.textContent = label;
+        button.dataset.id = id;
+        button.disabled = !can;
+        button.setAttribute("aria-pressed", String(on));
+        button.onclick = () => model.send_msg({ type: "action", id });
+        return button;
+      }),
+    );
+    group.querySelector(`[data-id="${had}"]`)?.focus();
+  };
+  model.on("overlays", draw);
+  draw();
+  return group;
+}
+
 /** The recording on the same head, small, at the same time. */
 function inset(model) {
   const box = document.createElement("figure");
@@ -128,9 +155,10 @@ export function renderBoard({ model, el }) {
   face.card.append(slot(model, "face"));
   const tag = document.createElement("div");
   tag.className = "tag";
-  face.card.append(tag, sides(model), inset(model));
+  face.card.append(tag, sides(model), overlays(model), inset(model));
 
   const curve = section("weighting", "g(u) at the joins");
+  curve.head.append(slot(model, "mode"));
   curve.card.append(slot(model, "presets"), slot(model, "plot"), slot(model, "sliders"));
 
   const lane = section("fragments", "Fragments");

@@ -105,7 +105,7 @@ export function renderCurve({ model, el }) {
     ctx.textAlign = "left";
     ctx.fillStyle = p.ink;
     ctx.fillText(fitText(ctx, model.title, w - half() - 16), half() + 8, 20);
-    drawEffect(ctx, [half() + 30, 32, w - 16, h - 52], model.effect, p);
+    drawEffect(ctx, [half() + 30, 32, w - 16, h - 52], { ...model.effect, known: Boolean(model.title) }, p);
     ctx.font = `400 11px ${p.family}`;
     ctx.textAlign = "left";
     ctx.fillStyle = p.acc;

@@ -80,6 +80,7 @@ export function drawEffect(ctx, box, data, p) {
   drawGround(ctx, box, toX, toY, p);
   const { now, other } = data;
   if (!now) {
+    if (!data.known) return;
     ctx.textAlign = "center";
     ctx.fillText(fitText(ctx, "no joins: one fragment covers all", x1 - x0), 0.5 * (x0 + x1), 0.5 * (y0 + y1));
     return;

@@ -103,7 +103,10 @@ def compute_effects(result: Result) -> Effects:
     """Measure every weighting function at every overlap on the pieces of a result."""
     natural = result.request.corpus.natural
     pieces = narrowed(result.pieces, natural)
-    names: dict[str, dict[str, Any]] = {name: {} for name in WEIGHTINGS if name != "user"}
+    shown = [n for n in WEIGHTINGS if n != "user"]
+    if result.request.config.blend.mode != "crossfade":  # g(u) does nothing there: one line, not eight
+        shown = [str(result.request.config.blend.weighting)]
+    names: dict[str, dict[str, Any]] = {name: {} for name in shown}
     curves = effect_curves(pieces, natural, names, OVERLAPS_S, **blend_settings(result.request))
     return Effects(result, curves, signal_band(result, SIGNALS[0]))
 

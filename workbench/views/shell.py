@@ -97,6 +97,7 @@ class Board(pn.custom.JSComponent):
 
     face = pn.custom.Child()
     inset = pn.custom.Child()
+    mode = pn.custom.Child()
     presets = pn.custom.Child()
     plot = pn.custom.Child()
     sliders = pn.custom.Child()
@@ -104,6 +105,7 @@ class Board(pn.custom.JSComponent):
     curves = pn.custom.Child()
 
     shown = param.Selector(default="lane", objects=["lane", "curves"], doc="What the lower card shows.")
+    overlays = param.List(default=[], doc="{id, label, on, can} of what can be shown over the head.")
     inset_shown = param.Boolean(default=False, doc="Whether there is a recording to compare with.")
     head_text = param.String(default="")
     lane_text = param.String(default="")

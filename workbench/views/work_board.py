@@ -8,81 +8,26 @@ from typing import Any
 
 import panel as pn
 
-from corpus_tools.mesh import CHARACTERS, DEFORMERS
-from corpus_tools.methods import METHODS
-from corpus_tools.synthesis import WEIGHTINGS, curve_through
-from workbench.actions import ban_unit, options_shown, swap_to, swap_unit, toggle_pin, unban
+from corpus_tools.synthesis import curve_through
+from workbench.actions import swap_to
 from workbench.state import (
-    Effects,
-    Result,
     Session,
     band_data,
     effect_data,
-    fragment_details,
-    missing_of,
-    pin_at,
-    stand_ins,
     weighting_samples,
 )
-from workbench.views.action_html import ActionHtml
-from workbench.views.controls import Controls, preset_buttons, select, slider
+from workbench.views.board_texts import head_text, lower_text, missing_text
+from workbench.views.controls import Controls, preset_buttons, slider
 from workbench.views.face import Face
-from workbench.views.history_list import compare_html, history_html
-from workbench.views.inspector import bans_html, details_html, options_html
+from workbench.views.head_actors import OVERLAYS
 from workbench.views.lane import NO_EFFECT, Lane, Points, WeightingPlot
+from workbench.views.settings_panel import PRESETS
 from workbench.views.shell import Board
 from workbench.views.trajectories import Trajectories
 
-__all__ = [
-    "PRESETS",
-    "BlendBoard",
-    "FragmentInspector",
-    "head_text",
-    "lower_text",
-    "missing_text",
-    "settings_panel",
-]
+__all__ = ["BlendBoard"]
 
-_SHORT = {
-    "exponential": "Exp.",
-    "user": "Yours",
-    "raised-cosine": "Cosine",
-    "smoothstep": "Smooth",
-    "smootherstep": "Smoother",
-}
-_RULES = {"Shared phone": "shared-phone", "As printed": "paper"}
-
-
-def _presets() -> dict[str, str]:
-    return {_SHORT.get(name, name.capitalize()): name for name in WEIGHTINGS}
-
-
-PRESETS = _presets()
-"""Label -> weighting function, in the order of the keys 1, 2, ..."""
-
-
-def head_text(result: Result) -> str:
-    """Return which head is shown and how large it is."""
-    mesh, n_markers = result.head.mesh, len(result.head.names)
-    return f"{mesh.name} head · {mesh.n_vertices} vertices · {n_markers} markers"
-
-
-def missing_text(result: Result) -> str:
-    """Return which diphones the corpus does not hold, and what stood in; empty when it holds all."""
-    stood = stand_ins(result)
-    if not stood:
-        return ""
-    gone = ", ".join(f"{a}-{b}" for a, b in missing_of(result)) or "Banned units"
-    more = f" and {len(stood) - 3} more" if len(stood) > 3 else ""
-    return f"No motion for {gone}: {'; '.join(stood[:3])}{more}"
-
-
-def lower_text(effects: Effects | None, result: Result, join: int) -> str:
-    """Return what would bring a join lower still, empty when nothing does by more than 2 %."""
-    best = effects.best(join) if effects is not None and effects.fits(result) else None
-    if best is None or best[2] > 0.98 * result.ratios[join]:
-        return ""
-    return f"lower still: {best[0]} at {1000 * best[1]:.0f} ms, {best[2]:.2f}"
+_MODES = {"Cross-fade": "crossfade", "Inertial": "inertial"}
 
 
 class BlendBoard(pn.viewable.Viewer):
@@ -118,6 +63,8 @@ class BlendBoard(pn.viewable.Viewer):
         self.plot = WeightingPlot(on_points=self._points, theme=session.theme)
         self.trajectories = Trajectories(session, controls, clock)
         self.presets = preset_buttons(controls, "Weighting function g(u)", "weighting", PRESETS)
+        self.mode = preset_buttons(controls, "How fragments are joined", "mode", _MODES)
+        self.mode.param.update(sizing_mode=None, width=170)
         self.overlap = slider(
             controls, "Longest overlap, s", "overlap_s", (0.0, 0.3), step=0.005, format="0.000"
         )
@@ -127,6 +74,7 @@ class BlendBoard(pn.viewable.Viewer):
         self.board = Board(
             face=self.face.view,
             inset=self.inset.view,
+            mode=self.mode,
             presets=self.presets,
             plot=self.plot,
             sliders=pn.Row(self.overlap, self.shape, sizing_mode="stretch_width", margin=0),
@@ -199,6 +147,23 @@ class BlendBoard(pn.viewable.Viewer):
             self._on_cancel()
         elif action == "view":
             self.switch_view()
+        elif action in OVERLAYS:
+            name = f"show_{action}"
+            setattr(self.face, name, not getattr(self.face, name))
+            self._overlays()
+
+    def _overlays(self) -> None:
+        """Say what can be shown over this head: only patches have a surface to hang on."""
+        can = {what: what == "markers" or self.face.has_surface for what in OVERLAYS}
+        self.board.overlays = [
+            {
+                "id": what,
+                "label": what.capitalize(),
+                "on": bool(getattr(self.face, f"show_{what}")) and can[what],
+                "can": can[what],
+            }
+            for what in OVERLAYS
+        ]
 
     def switch_view(self) -> None:
         """Show the trajectories instead of the lane, or the lane again."""
@@ -259,6 +224,7 @@ class BlendBoard(pn.viewable.Viewer):
             return
         if self.face.result is not result:
             self.face.show(result)
+            self._overlays()
         self.lane.show(result, self._session.other if self._session.side == "B" else None)
         self.lane.selected = self._session.selected
         n = len(result.selection.chosen)
@@ -273,81 +239,3 @@ class BlendBoard(pn.viewable.Viewer):
 
     def __panel__(self) -> Any:
         return self.board
-
-
-class FragmentInspector(pn.viewable.Viewer):
-    """What the selected fragment is and why, what else could speak its place, A and B, the history.
-
-    Parameters
-    ----------
-    session : Session
-    on_hear : callable
-        ``on_hear(option)`` plays a fragment in its own recording; None: the selected one.
-    """
-
-    def __init__(self, session: Session, on_hear: Callable[[int | None], None], **params: Any) -> None:
-        self._session, self._on_hear = session, on_hear
-        super().__init__(**params)
-        self.pane = ActionHtml(on_action=self.act)
-        watched = ["result", "other", "selected", "options", "theme", "edits", "side", "kept"]
-        session.param.watch(self._update, watched)
-        self._update()
-
-    def act(self, action: str, value: str = "") -> None:
-        """Do what a button, a row or a key asks for."""
-        session = self._session
-        number = int(value) if value.lstrip("-").isdigit() else 0
-        commands: dict[str, Callable[[], object]] = {
-            "swap": lambda: swap_to(session, number),
-            "step": lambda: swap_unit(session, number),
-            "pin": lambda: toggle_pin(session),
-            "ban": lambda: ban_unit(session),
-            "unban": lambda: unban(session, value),
-            "hear": lambda: self._on_hear(None),
-            "sides": session.swap_sides,
-            "keep": session.keep_as_a,
-            "go": lambda: session.go_to(number),
-        }
-        if action in commands:
-            commands[action]()
-
-    def _update(self, *events: Any) -> None:
-        s, details = self._session, None
-        if s.result is not None and s.selected < len(s.result.selection.chosen):
-            details = fragment_details(s.result, s.selected)
-        rate = s.result.trajectory.rate_hz if s.result is not None else 120.0
-        parts = [details_html(details, s.theme, rate)]
-        options = options_shown(s)
-        if options is not None and s.result is not None:
-            chosen = s.result.selection.chosen[s.selected]
-            pinned = bool(pin_at(s.pins, chosen.first, chosen.last))
-            parts.append(options_html(options, s.text_of, pinned))
-        parts += [bans_html(s.bans), compare_html(s), history_html(s)]
-        self.pane.html = "".join(parts)
-
-    def __panel__(self) -> Any:
-        return self.pane
-
-
-def settings_panel(controls: Controls) -> pn.Column:
-    """Return the choices that are not g(u): method, overlap rule, head, deformer."""
-    methods = {name.capitalize(): name for name in METHODS}
-    heads = {name.capitalize(): name for name in CHARACTERS}
-    deformers = {name.upper() if name == "rbf" else name.capitalize(): name for name in DEFORMERS}
-    pair = {"margin": (10, 4, 2, 12)}, {"margin": (10, 12, 2, 4)}
-    return pn.Column(
-        pn.Row(
-            select(controls, "Method", "method", methods, **pair[0]),
-            select(controls, "Overlap rule", "rule", _RULES, **pair[1]),
-            sizing_mode="stretch_width",
-            margin=0,
-        ),
-        pn.Row(
-            select(controls, "Head", "mesh", heads, **pair[0]),
-            select(controls, "Deformer", "deformer", deformers, **pair[1]),
-            sizing_mode="stretch_width",
-            margin=0,
-        ),
-        sizing_mode="stretch_width",
-        margin=0,
-    )
