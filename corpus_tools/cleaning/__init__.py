@@ -1,6 +1,8 @@
 """From raw captures to clean ones: head motion, noise, gaps, neutral pose (paper A section 4)."""
 
 from corpus_tools.cleaning.corpus import CleanedCorpus, clean_captures, neutral_pose
+from corpus_tools.cleaning.face_model import FaceModel, face_model
+from corpus_tools.cleaning.filling import GAP_FILLERS, fill_gaps
 from corpus_tools.cleaning.gaps import gaps, marker_gaps
 from corpus_tools.cleaning.head_motion import (
     HeadMotion,
@@ -11,10 +13,14 @@ from corpus_tools.cleaning.head_motion import (
 from corpus_tools.cleaning.kalman import kalman_smooth, measurement_sd_mm, smooth_channels
 
 __all__ = [
+    "GAP_FILLERS",
     "CleanedCorpus",
+    "FaceModel",
     "HeadMotion",
     "clean_captures",
     "estimate_head_motion",
+    "face_model",
+    "fill_gaps",
     "gaps",
     "kalman_smooth",
     "marker_gaps",

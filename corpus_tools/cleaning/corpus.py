@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from corpus_tools.cleaning.face_model import FaceModel, face_model
+from corpus_tools.cleaning.filling import fill_gaps
 from corpus_tools.cleaning.head_motion import HeadMotion, reference_shape, remove_head_motion
 from corpus_tools.cleaning.kalman import kalman_smooth
 from corpus_tools.core import Capture, FloatArray, MotionError, frozen
@@ -27,12 +29,31 @@ class CleanedCorpus:
     head_motion : tuple of HeadMotion
     scale_sd : float
         Spread of the head scale over all fitted frames; 0 for rigid fits.
+    sd_mm : tuple of (n_frames, n_markers) mm
+        One standard deviation of a coordinate of every sample after smoothing; of filled ones, of filling.
     """
 
     captures: tuple[Capture, ...]
     reference_mm: FloatArray
     head_motion: tuple[HeadMotion, ...]
     scale_sd: float
+    sd_mm: tuple[FloatArray, ...]
+
+
+def _model(captures: Sequence[Capture], gap_method: str, n_components: int) -> FaceModel | None:
+    """Return how the markers move together, when a gap asks for it: markers hidden while others are seen."""
+    if gap_method != "pca-gp":
+        return None
+    seen = (np.isfinite(c.positions_mm).all(axis=2) for c in captures)
+    if not any((s.any(axis=1) & ~s.all(axis=1)).any() for s in seen):
+        return None
+    return face_model(captures, n_components)
+
+
+def _smoothed(filled: Capture, fill_sd_mm: FloatArray, cutoff_hz: float) -> tuple[Capture, FloatArray]:
+    smooth, sd_mm = kalman_smooth(filled, cutoff_hz)
+    of_samples = np.sqrt((sd_mm**2).mean(axis=2))
+    return smooth, np.where(fill_sd_mm > 0, fill_sd_mm, of_samples)
 
 
 def clean_captures(
@@ -43,10 +64,17 @@ def clean_captures(
     cutoff_hz: float = 10.0,
     head_cutoff_mm: float = 1.0,
     iterations: int = 6,
+    gap_method: str = "pca-gp",
+    gap_longest_s: float = 1.0,
+    gap_doubt_mm: float = 1.0,
+    gap_components: int = 24,
     names: Sequence[str] = (),
     progress: Callable[[float, str], None] | None = None,
 ) -> CleanedCorpus:
-    """Remove head motion and noise from all recordings of one speaker (paper A section 4).
+    """Remove head motion, fill gaps and smooth all recordings of one speaker (paper A section 4).
+
+    In this order (our choice): head removal needs no whole frame, a filled marker would only weaken it, and
+    in the head-stabilised space the markers of a face tell most about each other.
 
     Parameters
     ----------
@@ -60,6 +88,10 @@ def clean_captures(
         Of the Kalman smoother, Hz.
     head_cutoff_mm, iterations
         As of :func:`~corpus_tools.cleaning.head_motion.estimate_head_motion`.
+    gap_method, gap_longest_s, gap_doubt_mm
+        As of :func:`~corpus_tools.cleaning.filling.fill_gaps`.
+    gap_components : int
+        Of the model of the face that fills gaps.
     names : sequence of str, optional
         Of the recordings, for messages.
     progress : callable, optional
@@ -73,20 +105,29 @@ def clean_captures(
     report = progress or (lambda fraction, what: None)
     report(0.0, "finding the head")
     reference = reference_shape(captures, columns, allow_scale, head_cutoff_mm)
-    cleaned, motions = [], []
+    stable, motions = [], []
     for index, capture in enumerate(captures):
-        report(0.2 + 0.8 * index / len(captures), "cleaning")
+        report(0.2 + 0.5 * index / len(captures), "removing head motion")
         try:
-            stable, motion = remove_head_motion(
+            still, motion = remove_head_motion(
                 capture, reference, columns, allow_scale, head_cutoff_mm, iterations
             )
         except MotionError as error:
             name = names[index] if names else f"recording {index + 1}"
             raise MotionError(f"'{name}': {error}") from None
-        cleaned.append(kalman_smooth(stable, cutoff_hz)[0])
+        stable.append(still)
         motions.append(motion)
+    report(0.7, "filling gaps")
+    model = _model(stable, gap_method, gap_components)
+    cleaned, bands = [], []
+    for index, still in enumerate(stable):
+        report(0.7 + 0.3 * index / len(captures), "cleaning")
+        filled = fill_gaps(still, gap_method, model=model, longest_s=gap_longest_s, doubt_mm=gap_doubt_mm)
+        smooth, band = _smoothed(*filled, cutoff_hz)
+        cleaned.append(smooth)
+        bands.append(frozen(band))
     scales = np.concatenate([m.scale[m.fitted] for m in motions])
-    return CleanedCorpus(tuple(cleaned), frozen(reference), tuple(motions), float(scales.std()))
+    return CleanedCorpus(tuple(cleaned), frozen(reference), tuple(motions), float(scales.std()), tuple(bands))
 
 
 def neutral_pose(captures: Sequence[Capture], quiet: Sequence[npt.NDArray[np.bool_]]) -> FloatArray:

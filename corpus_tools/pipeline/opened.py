@@ -250,6 +250,10 @@ def open_corpus(
         cutoff_hz=config.cleaning.cutoff_hz,
         head_cutoff_mm=config.cleaning.head_cutoff_mm,
         iterations=config.cleaning.head_iterations,
+        gap_method=config.cleaning.gap_method,
+        gap_longest_s=config.cleaning.gap_longest_s,
+        gap_doubt_mm=config.cleaning.gap_doubt_mm,
+        gap_components=config.cleaning.gap_components,
         names=[utterance.name for _, utterance in loaded],
         progress=lambda f, w: progress(0.5 + 0.35 * f, w),
     )
