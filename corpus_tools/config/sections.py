@@ -195,7 +195,7 @@ class DeformSettings(Section):
     """Paper A section 6: from markers to the vertices of a mesh."""
 
     mesh: str = Field("base", description="A bundled head by name, or a mesh file.")
-    deformer: str = Field("rbf", description="Deformer by name.")
+    deformer: str = Field("bid", description="Deformer by name: bid, linear or rbf.")
 
 
 @section("output")

@@ -1,7 +1,7 @@
 """Meshes: the bundled heads, mesh files, lips, jaw, and the deformers that tie vertices to markers."""
 
 from corpus_tools.mesh.attachment import Attachment
-from corpus_tools.mesh.binding import Binding, ControlSurface, LinearBinding, PatchBinding
+from corpus_tools.mesh.binding import Binding, LinearBinding, PatchBinding
 from corpus_tools.mesh.bundle import CHARACTERS, bundled_head, bundled_morph_mm, bundled_morphs
 from corpus_tools.mesh.chart import CONTROL_POINTS, Chart, open_mouth_chart
 from corpus_tools.mesh.deform import ATTACHMENTS, DEFORMERS, bind_bid, bind_linear, bind_rbf
@@ -11,6 +11,7 @@ from corpus_tools.mesh.jaw import JAW_PARTS, jaw_hinge_mm, jaw_motion
 from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, close_lips, lower_side, signed_lip_aperture_mm
 from corpus_tools.mesh.rbf import DISPLACEMENT_KERNELS, displacement_basis
 from corpus_tools.mesh.regions import SkinRegion, skin_regions
+from corpus_tools.mesh.surface import ControlSurface
 from corpus_tools.mesh.topology import edge_loop, edges_of, geodesic_mm, triangles, vertex_normals
 
 __all__ = [

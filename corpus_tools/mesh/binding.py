@@ -9,16 +9,17 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array, vstack
 
 from corpus_tools.core import FloatArray, IntArray, Mesh, MeshError, frozen
 from corpus_tools.mesh.attachment import Attachment, frames_at
-from corpus_tools.mesh.chart import CONTROL_POINTS, Chart
 from corpus_tools.mesh.jaw import JAW_PARTS, jaw_motion
 from corpus_tools.mesh.kernel import Plan, patch_frames, plan_for
 from corpus_tools.mesh.patches import bernstein, tangent_rows
+from corpus_tools.mesh.surface import ControlSurface
 
-__all__ = ["Binding", "ControlSurface", "LinearBinding", "PatchBinding", "with_followers"]
+__all__ = ["Binding", "LinearBinding", "PatchBinding"]
+
+UP = np.array([0.0, 1.0, 0.0])
 
 
 class Binding(abc.ABC):
@@ -47,19 +48,26 @@ class Binding(abc.ABC):
 
     @abc.abstractmethod
     def response(self, vertices: Sequence[int] | IntArray) -> FloatArray:
-        """Return how a shift of a marker shifts vertices along the same axis, near rest: (n, n_markers)."""
+        """Return how a shift of a marker shifts vertices along the same axis: (n, n_markers).
+
+        All there is to a linear binding; for another one what holds while no normal turns.
+        """
+
+    @abc.abstractmethod
+    def rise(self, vertices: Sequence[int] | IntArray) -> FloatArray:
+        """Return how y of vertices grows with x, y, z of the markers, at rest: (n, n_markers, 3)."""
 
     @abc.abstractmethod
     def skin_mm(self, targets_mm: FloatArray, dtype: npt.DTypeLike = np.float32) -> npt.NDArray[np.floating]:
         """Return the driven vertices in every frame, (n_frames, n_driven, 3), mm."""
 
     def lip_response(self) -> FloatArray:
-        """Return the aperture of each lip pair per mm that a marker moves up, shape (n_pairs, n_markers).
+        """Return the aperture of each lip pair per mm that a marker moves, (n_pairs, n_markers, 3).
 
-        A binding that is not linear gives its linearisation at rest.
+        Linearised at rest.
         """
         pairs = self.mesh.lip_pairs
-        return np.asarray(self.response(pairs[:, 0]) - self.response(pairs[:, 1]))
+        return np.asarray(self.rise(pairs[:, 0]) - self.rise(pairs[:, 1]))
 
     def rigid(self, targets_mm: npt.ArrayLike) -> dict[str, FloatArray]:
         """Return the rigid motion of every part that follows the jaw: {part: (n_frames, 4, 4)}, mm."""
@@ -105,7 +113,7 @@ class Binding(abc.ABC):
             m = np.asarray(matrices, float)
             points = self.mesh.vertices_mm[mask] @ m[:, :3, :3].transpose(0, 2, 1) + m[:, None, :3, 3]
             out[:, mask] = points.astype(dtype)
-        return out
+        return np.asarray(out)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,7 +141,11 @@ class LinearBinding(Binding):
 
     def response(self, vertices: Sequence[int] | IntArray) -> FloatArray:
         """Return the rows of the basis, (n, n_markers)."""
-        return self.basis[np.asarray(vertices, np.int64)]
+        return np.asarray(self.basis[np.asarray(vertices, np.int64)])
+
+    def rise(self, vertices: Sequence[int] | IntArray) -> FloatArray:
+        """Return how y of vertices grows with x, y, z of the markers: (n, n_markers, 3)."""
+        return np.asarray(self.response(vertices)[:, :, None] * UP)
 
     def skin_mm(self, targets_mm: FloatArray, dtype: npt.DTypeLike = np.float32) -> npt.NDArray[np.floating]:
         """Return the driven vertices in every frame, (n_frames, n_driven, 3), mm."""
@@ -143,82 +155,6 @@ class LinearBinding(Binding):
         rows = shift.transpose(0, 2, 1).reshape(3 * n, -1) @ self.basis[driven].T.astype(dtype)
         moved = rows.reshape(n, 3, -1).transpose(0, 2, 1)
         return np.asarray(self.mesh.vertices_mm[driven].astype(dtype) + moved)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ControlSurface:
-    """Bezier triangles whose control points are linear in the markers.
-
-    Attributes
-    ----------
-    chart : Chart
-        Triangles of markers; patches 3 k to 3 k + 2 belong to triangle k. Patches beyond these carry one
-        vertex each and only shift (:func:`with_followers`).
-    net : csr (10 n_patches, n_markers) float64
-        Shift of control points = net @ shift of markers; ten rows a patch, in the order of
-        :data:`corpus_tools.mesh.chart.CONTROL_POINTS`: b300 b030 b003 b210 b201 b120 b021 b102 b012 b111.
-        A row sums to one where no point that stands still has a share in it.
-    markers_rest_mm : (n_markers, 3) float64, mm
-    control_rest_mm : (n_patches, 10, 3) float64, mm
-    """
-
-    chart: Chart
-    net: csr_array
-    markers_rest_mm: FloatArray
-    control_rest_mm: FloatArray
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "markers_rest_mm", frozen(self.markers_rest_mm))
-        object.__setattr__(self, "control_rest_mm", frozen(self.control_rest_mm))
-
-    @property
-    def n_patches(self) -> int:
-        """Number of patches."""
-        return int(self.net.shape[0]) // 10
-
-    def control_mm(self, markers_mm: npt.ArrayLike) -> FloatArray:
-        """Return the control points (n_patches, 10, 3), mm, for markers (n_markers, 3), mm."""
-        shift = np.asarray(self.net @ (np.asarray(markers_mm, float) - self.markers_rest_mm))
-        return self.control_rest_mm + shift.reshape(-1, 10, 3)
-
-
-def with_followers(
-    surface: ControlSurface,
-    attachment: Attachment,
-    vertices: IntArray,
-    places_mm: FloatArray,
-    basis: FloatArray,
-) -> tuple[ControlSurface, Attachment]:
-    """Add vertices that move by a fixed blend of marker shifts, each on a small patch that only shifts.
-
-    So the inside of the mouth, which has no markers, is deformed by the same kernel as the skin.
-
-    Parameters
-    ----------
-    surface : ControlSurface
-    attachment : Attachment
-    vertices : (n,) int
-    places_mm : (n, 3), mm
-        At rest.
-    basis : (n, n_markers)
-    """
-    if not len(vertices):
-        return surface, attachment
-    small = np.concatenate([CONTROL_POINTS[:, :2] / 3.0, np.zeros((10, 1))], axis=1)
-    patches = places_mm[:, None, :] + small - small.mean(axis=0)
-    net = vstack([surface.net, csr_array(np.repeat(basis, 10, axis=0))], format="csr")
-    control = np.concatenate([surface.control_rest_mm, patches])
-    n, third = len(vertices), np.full((len(vertices), 3), 1.0 / 3.0)
-    both = np.concatenate([attachment.vertices, vertices])
-    order = np.argsort(both)
-    grown = Attachment(
-        both[order],
-        np.concatenate([attachment.patch, surface.n_patches + np.arange(n)])[order],
-        np.concatenate([attachment.bary, third])[order],
-        np.concatenate([attachment.offset, np.zeros((n, 3))])[order],
-        np.concatenate([attachment.weight, np.ones(n)])[order],
-    )
-    return ControlSurface(surface.chart, csr_array(net), surface.markers_rest_mm, control), grown
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -248,25 +184,37 @@ class PatchBinding(Binding):
         return self.attachment.vertices
 
     def response(self, vertices: Sequence[int] | IntArray) -> FloatArray:
-        """Return how a marker's shift along y shifts the vertices along y, at rest: (n, n_markers).
+        """Return how a shift of a marker shifts vertices along the same axis, no normal turning."""
+        a, rows, hit = self._rows(vertices)
+        first, second = tangent_rows(a.bary[rows])
+        blend = bernstein(a.bary[rows]) + a.offset[rows, :1] * first + a.offset[rows, 1:2] * second
+        return self._by_markers(blend * hit[:, None], rows)
 
-        Exact there in y: the normal turns with the patch.
-        """
+    def rise(self, vertices: Sequence[int] | IntArray) -> FloatArray:
+        """Return how y of vertices grows with x, y, z of the markers, at rest: (n, n_markers, 3)."""
+        a, rows, hit = self._rows(vertices)
+        first, second = tangent_rows(a.bary[rows])
+        _, t1, t2, normal = frames_at(self.surface.control_rest_mm[a.patch[rows]], a.bary[rows])
+        out = self.response(vertices)[:, :, None] * UP
+        for axis in range(3):
+            turn1, turn2 = _normal_rise(t1, t2, normal, axis)
+            turn = a.offset[rows, 2:] * (turn1[:, None] * first + turn2[:, None] * second)
+            out[:, :, axis] += self._by_markers(turn * hit[:, None], rows)
+        return np.asarray(out)
+
+    def _rows(self, vertices: Sequence[int] | IntArray) -> tuple[Attachment, IntArray, FloatArray]:
+        """Return the attachment, the rows of vertices in it, and their share in the motion."""
         a = self.attachment
-        rows = np.searchsorted(a.vertices, vertices)
-        rows = np.minimum(rows, len(a.vertices) - 1)
-        hit = a.vertices[rows] == np.asarray(vertices)
-        patch, bary, offset = a.patch[rows], a.bary[rows], a.offset[rows]
-        first, second = tangent_rows(bary)
-        _, t1, t2, normal = frames_at(self.surface.control_rest_mm[patch], bary)
-        turn1, turn2 = _normal_turn(t1, t2, normal, axis=1)
-        blend = bernstein(bary) + (offset[:, 0] + offset[:, 2] * turn1)[:, None] * first
-        blend = blend + (offset[:, 1] + offset[:, 2] * turn2)[:, None] * second
-        net = self.surface.net
-        out = np.zeros((len(rows), net.shape[1]))
+        rows = np.minimum(np.searchsorted(a.vertices, vertices), len(a.vertices) - 1)
+        return a, rows, a.weight[rows] * (a.vertices[rows] == np.asarray(vertices))
+
+    def _by_markers(self, blend: FloatArray, rows: IntArray) -> FloatArray:
+        """Return blends of the ten control points (n, 10) as blends of the markers (n, n_markers)."""
+        first = 10 * self.attachment.patch[rows]
+        out = np.zeros((len(rows), len(self.names)))
         for k in range(10):
-            out += blend[:, k : k + 1] * net[10 * patch + k].toarray()
-        return np.asarray(out * (a.weight[rows] * hit)[:, None])
+            out += blend[:, k : k + 1] * self.surface.net[first + k].toarray()
+        return np.asarray(out)
 
     def skin_mm(self, targets_mm: FloatArray, dtype: npt.DTypeLike = np.float32) -> npt.NDArray[np.floating]:
         """Return the driven vertices in every frame, (n_frames, n_driven, 3), mm."""
@@ -281,15 +229,14 @@ class PatchBinding(Binding):
         return self.plans[dtype]
 
 
-def _normal_turn(
+def _normal_rise(
     t1: FloatArray, t2: FloatArray, normal: FloatArray, axis: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return by how much the unit normal moves along `axis` as T1, and as T2, moves along it."""
-    along = np.zeros(3)
-    along[axis] = 1.0
+    """Return by how much y of the unit normal grows as T1, and as T2, moves along an axis."""
+    along = np.eye(3)[axis]
     length = np.linalg.norm(np.cross(t1, t2), axis=1)
     found = []
     for change in (np.cross(along, t2), np.cross(t1, along)):
         tangential = change - (change * normal).sum(axis=1, keepdims=True) * normal
-        found.append(tangential[:, axis] / length)
+        found.append(tangential[:, 1] / length)
     return found[0], found[1]

@@ -34,8 +34,11 @@ CONTROL_POINTS = np.array(
 
 INNER_RING = tuple(f"lip_in{i}" for i in range(8))
 OUTER_RING = tuple(f"lip_out{i}" for i in range(12))
-OPENING = 0.1
-"""How far the chart opens the mouth, as a share of its width; our choice."""
+CORNERS = ("lip_in0", "lip_in4", "lip_out0", "lip_out6")
+OPENINGS = (0.1, 0.2, 0.3, 0.45)
+"""How far the mouth is opened, as shares of its width: the last to find triangles, the first that folds none
+of them for the chart, which thus stays near the true distances; our choice."""
+TWO = np.arange(6).reshape(2, 3)
 SLIVER_DEG = 5.0
 N_STILL = 20
 STILL_MM = 55.0
@@ -57,18 +60,22 @@ class Chart:
         Points, counter-clockwise seen from outside.
     side : (n_points,) int8
         1 on the upper lip, -1 on the lower, 0 elsewhere (corners of the mouth too).
+    corner : (n_points,) bool
+        Corners of the mouth.
     """
 
     vertices: IntArray
     points_mm: FloatArray
     triangles: IntArray
     side: npt.NDArray[np.int8]
+    corner: BoolArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(self.vertices, np.int64))
         object.__setattr__(self, "points_mm", frozen(self.points_mm))
         object.__setattr__(self, "triangles", frozen(self.triangles, np.int64))
         object.__setattr__(self, "side", frozen(self.side, np.int8))
+        object.__setattr__(self, "corner", frozen(self.corner, np.bool_))
 
     @property
     def triangle_side(self) -> npt.NDArray[np.int8]:
@@ -113,7 +120,8 @@ def open_mouth_chart(mesh: Mesh, names: Sequence[str]) -> Chart:
 
     The closed mouth is opened by lowering everything that is nearer to the lower lip along the skin, as
     inner lips coincide in a closed one; then a cylinder about the head is unrolled. Of the Delaunay
-    triangles those in the mouth, those across it, and slivers on the rim are left out.
+    triangles those in the mouth, those across it, and slivers on the rim are left out. The places of the
+    points come from a less open mouth (:data:`OPENINGS`).
 
     Parameters
     ----------
@@ -127,12 +135,14 @@ def open_mouth_chart(mesh: Mesh, names: Sequence[str]) -> Chart:
         The markers lie on a line or are too few.
     """
     at = np.array([mesh.markers[n] for n in names], np.int64)
-    opened = _opened(mesh, at, names)
-    points = _with_inner_corners(_unrolled(opened), mesh.vertices_mm[at], names)
-    still, around = _still_points(mesh, at, points)
-    at, points = np.concatenate([at, still]), np.concatenate([points, around])
-    side = np.zeros(len(at), np.int8)
-    side[: len(names)] = marker_sides(names)
+    lowered = lower_side(mesh)[at]
+    lips = np.array([n in (*INNER_RING, *OUTER_RING) for n in names])
+    lowered[lips] = 0.5 - 0.5 * marker_sides(names)[lips]
+    width = float(np.ptp(mesh.vertices_mm[at[lips], 0])) if lips.any() else 0.0
+    charts = [_laid(mesh, at, names, opening * width * lowered) for opening in OPENINGS]
+    vertices, points = charts[-1]
+    side, corner = np.zeros(len(vertices), np.int8), np.zeros(len(vertices), bool)
+    side[: len(names)], corner[: len(names)] = marker_sides(names), [n in CORNERS for n in names]
     try:
         triangles = np.asarray(Delaunay(points).simplices, np.int64)
     except (QhullError, ValueError) as error:
@@ -142,18 +152,53 @@ def open_mouth_chart(mesh: Mesh, names: Sequence[str]) -> Chart:
     triangles = _counter_clockwise(points, triangles)
     both = (side[triangles] > 0).any(axis=1) & (side[triangles] < 0).any(axis=1)
     triangles = triangles[~(both | _in_the_mouth(points, triangles, names))]
-    return Chart(at, points, _without_slivers(points, triangles), side)
+    triangles = _without_slivers(points, triangles)
+    points = next(p for _, p in charts if (_twice_area(p, triangles) > 0).all() or p is points)
+    return Chart(vertices, points, _flipped(points, triangles, side), side, corner)
 
 
-def _opened(mesh: Mesh, at: IntArray, names: Sequence[str]) -> FloatArray:
-    """Return the markers with the mouth opened by :data:`OPENING` of its width, its corners half-way."""
-    points: FloatArray = mesh.vertices_mm[at].copy()
-    lips = [i for i, n in enumerate(names) if n in (*INNER_RING, *OUTER_RING)]
-    if len(lips) > 1:
-        lowered = lower_side(mesh)[at]
-        lowered[lips] = 0.5 - 0.5 * marker_sides(names)[lips]
-        points[:, 1] -= OPENING * float(np.ptp(points[lips, 0])) * lowered
-    return points
+def _flipped(points: FloatArray, triangles: IntArray, side: npt.NDArray[np.int8]) -> IntArray:
+    """Flip edges until no inner one faces more than 180 degrees: Delaunay where the chart really lies.
+
+    The rim and the mouth stay what they are, and no new edge joins the two lips.
+    """
+    out = triangles.copy()
+    for _ in range(len(out)):
+        sides = out[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2)
+        owner = {(int(a), int(b)): k for k, (a, b) in enumerate(sides)}
+        twin = [(k, owner[b, a]) for (a, b), k in owner.items() if a < b and (b, a) in owner]
+        done = set()
+        for k, other in twin:
+            if k // 3 in done or other // 3 in done:
+                continue
+            (a, b), c, d = sides[k], out[k // 3, k % 3], out[other // 3, other % 3]
+            pair = np.array([[c, a, d], [d, b, c]])
+            if side[c] * side[d] >= 0 and _worth_flipping(points[[a, b, c, d]], points[pair]):
+                out[k // 3], out[other // 3] = pair
+                done |= {k // 3, other // 3}
+        if not done:
+            break
+    return out
+
+
+def _worth_flipping(quad: FloatArray, flipped: FloatArray) -> bool:
+    """Say whether edge a b faces more than 180 degrees from c and d, and both new triangles are sound."""
+    a, b, c, d = quad
+    facing = 0.0
+    for tip in (c, d):
+        u, v = a - tip, b - tip
+        facing += float(np.arctan2(abs(u[0] * v[1] - u[1] * v[0]), u @ v))
+    return facing > np.pi + 1e-6 and bool((_twice_area(flipped.reshape(-1, 2), TWO) > 1e-9).all())
+
+
+def _laid(
+    mesh: Mesh, at: IntArray, names: Sequence[str], lowered_mm: FloatArray
+) -> tuple[IntArray, FloatArray]:
+    """Return vertices and places of all points of the chart with the markers lowered by so much."""
+    opened = mesh.vertices_mm[at] - lowered_mm[:, None] * [0.0, 1.0, 0.0]
+    points = _with_inner_corners(_unrolled(opened), mesh.vertices_mm[at], names)
+    still, around = _still_points(mesh, at, points)
+    return np.concatenate([at, still]), np.concatenate([points, around])
 
 
 def _unrolled(points: FloatArray) -> FloatArray:
@@ -204,9 +249,13 @@ def _still_points(mesh: Mesh, at: IntArray, points: FloatArray) -> tuple[IntArra
     return np.array(vertices, np.int64), np.array(places).reshape(-1, 2)
 
 
-def _counter_clockwise(points: FloatArray, triangles: IntArray) -> IntArray:
+def _twice_area(points: FloatArray, triangles: IntArray) -> FloatArray:
     a, b, c = points[triangles].transpose(1, 0, 2)
-    turned = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0] < 0
+    return np.asarray((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+
+
+def _counter_clockwise(points: FloatArray, triangles: IntArray) -> IntArray:
+    turned = _twice_area(points, triangles) < 0
     out = triangles.copy()
     out[turned] = triangles[turned][:, [0, 2, 1]]
     return out

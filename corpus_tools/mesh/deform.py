@@ -9,7 +9,7 @@ from scipy.sparse import csr_array
 
 from corpus_tools.core import BoolArray, FloatArray, IntArray, Mesh, MeshError, Registry
 from corpus_tools.mesh.attachment import Attachment, attach, nearest_on_patches
-from corpus_tools.mesh.binding import Binding, ControlSurface, LinearBinding, PatchBinding, with_followers
+from corpus_tools.mesh.binding import Binding, LinearBinding, PatchBinding
 from corpus_tools.mesh.chart import Chart, chart_places, open_mouth_chart
 from corpus_tools.mesh.falloff import STILL_MARKERS, marker_fade
 from corpus_tools.mesh.kernel import warm_up
@@ -17,6 +17,7 @@ from corpus_tools.mesh.lips import lip_distances_mm
 from corpus_tools.mesh.patches import linear_net, smooth_net
 from corpus_tools.mesh.rbf import displacement_basis
 from corpus_tools.mesh.regions import SkinRegion, skin_regions
+from corpus_tools.mesh.surface import ControlSurface, with_followers
 from corpus_tools.mesh.topology import vertex_normals
 
 __all__ = ["ATTACHMENTS", "DEFORMERS", "bind_bid", "bind_linear", "bind_rbf"]

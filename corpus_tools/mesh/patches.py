@@ -51,14 +51,15 @@ def gradients(chart: Chart) -> FloatArray:
 
     Weighted least squares through the marker itself over its neighbours in the triangulation (and theirs,
     where a marker has few); with curvature where there are at least eight. A marker of one lip never looks at
-    the other.
+    the other, and a corner of the mouth at neither, so that the lips move entirely independently.
     """
     n = len(chart.points_mm)
     near = np.zeros((n, n), bool)
     for k in range(3):
         near[chart.triangles[:, k], chart.triangles[:, k - 1]] = True
     near |= near.T
-    across = np.outer(chart.side, chart.side) < 0
+    lip = chart.side != 0
+    across = (np.outer(chart.side, chart.side) < 0) | np.outer(chart.corner, lip)
     near &= ~across
     nearer = near.astype(int)
     further = ((nearer @ nearer + nearer) > 0) & ~across & ~np.eye(n, dtype=bool)

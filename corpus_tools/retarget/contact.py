@@ -101,14 +101,17 @@ def keep_lips_apart(
     targets_mm : (n_frames, n_markers, 3), mm
     rest_mm : (n_markers, 3), mm
         The closed mouth.
-    response : (n_pairs, n_markers)
-        Aperture of each pair per mm of marker height.
+    response : (n_pairs, n_markers) or (n_pairs, n_markers, 3)
+        Aperture of each pair per mm of marker height, or per mm along x, y, z.
     solver : (n_markers, n_pairs)
         From :func:`contact_solver`.
     seal_mm, soft_mm : float, mm
     """
     out = np.array(targets_mm, float)
-    aperture = (out[..., 1] - rest_mm[:, 1]) @ response.T
+    if response.ndim == 2:
+        aperture = (out[..., 1] - rest_mm[:, 1]) @ response.T
+    else:
+        aperture = np.tensordot(out - rest_mm, response, axes=([1, 2], [1, 2]))
     change = contact_aperture(aperture, seal_mm=seal_mm, soft_mm=soft_mm) - aperture
     out[..., 1] += change @ solver.T
     return out

@@ -30,8 +30,8 @@ class Retargeter:
         W(neutral): differs from the rest pose of the mesh by what smoothing leaves over.
     rest_mm : (n_markers, 3) mm
         The marker vertices of the mesh.
-    response : (n_pairs, n_markers)
-        Aperture of each lip pair of the mesh per mm that a marker moves up.
+    response : (n_pairs, n_markers, 3)
+        Aperture of each lip pair of the mesh per mm that a marker moves along x, y, z.
     solver : (n_markers, n_pairs)
         Marker heights that change the apertures (:func:`~corpus_tools.retarget.contact.contact_solver`).
     contact : bool
@@ -110,8 +110,8 @@ def prepare_retarget(
         Keep the lips from passing through each other.
     seal_mm, soft_mm : float, mm
         See :func:`~corpus_tools.retarget.contact.contact_aperture`.
-    lip_response : (n_pairs, n_markers), optional
-        Aperture of each lip pair of the mesh per mm that a marker moves up, from the deformer
+    lip_response : (n_pairs, n_markers, 3), optional
+        Aperture of each lip pair of the mesh per mm that a marker moves along x, y, z, from the deformer
         (``binding.lip_response()``); without it only the inner-lip markers themselves are kept apart.
 
     Raises
@@ -136,7 +136,7 @@ def prepare_retarget(
         warped_neutral_mm=warp(neutral),
         rest_mm=rest,
         response=response,
-        solver=contact_solver(response * lips if lips.any() else response),
+        solver=contact_solver(response[..., 1] * lips if lips.any() else response[..., 1]),
         contact=contact,
         seal_mm=float(seal_mm),
         soft_mm=float(soft_mm),
@@ -145,10 +145,12 @@ def prepare_retarget(
 
 def _response(given: npt.ArrayLike | None, names: Sequence[str], mesh: Mesh) -> FloatArray:
     if given is None:
-        return pair_response(lip_marker_pairs(mesh, names), len(names))
+        return pair_response(lip_marker_pairs(mesh, names), len(names))[..., None] * [0.0, 1.0, 0.0]
     response = np.array(given, float)
-    if response.ndim != 2 or response.shape[1] != len(names):
-        raise MeshError(f"The lip response has shape {response.shape}; (pairs, {len(names)}) was expected.")
+    if response.ndim != 3 or response.shape[1:] != (len(names), 3):
+        raise MeshError(
+            f"The lip response has shape {response.shape}; (pairs, {len(names)}, 3) was expected."
+        )
     return response
 
 

@@ -71,7 +71,7 @@ def test_frames_are_retargetted_relative_to_the_neutral_pose(actor):
 def test_one_capture_opens_and_rounds_the_mouth_of_every_character(actor, character):
     names, neutral, motion = actor
     mesh = bundled_head(character)
-    binding = DEFORMERS["rbf"](mesh, names)
+    binding = DEFORMERS["bid"](mesh, names)
     ready = prepare_retarget(neutral, names, mesh, lip_response=binding.lip_response())
     assert ready.folds().n_folded == 0
     vertices = binding.apply(ready(motion))
@@ -94,7 +94,7 @@ def test_characters_keep_their_own_shape(actor):
 def test_the_lips_move_entirely_independently(actor):
     names, _, _ = actor
     mesh = bundled_head("base")
-    binding = DEFORMERS["rbf"](mesh, names)
+    binding = DEFORMERS["bid"](mesh, names)
     targets = binding.rest_mm.copy()
     lower = [i for i, n in enumerate(names) if n in ("lip_in5", "lip_in6", "lip_in7", "lip_out8", "lip_out9")]
     targets[lower, 1] -= 8.0
@@ -123,5 +123,5 @@ _BINDINGS = {}
 
 def _binding(names):
     if names not in _BINDINGS:
-        _BINDINGS[names] = DEFORMERS["rbf"](bundled_head("base"), names)
+        _BINDINGS[names] = DEFORMERS["bid"](bundled_head("base"), names)
     return _BINDINGS[names]

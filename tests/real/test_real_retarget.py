@@ -39,7 +39,7 @@ def actor(corpora):
 def on_head(actor, character, sentence):
     motion, labels, neutral, names = actor
     mesh = bundled_head(character)
-    binding = DEFORMERS["rbf"](mesh, names)
+    binding = DEFORMERS["bid"](mesh, names)
     ready = prepare_retarget(neutral, names, mesh, lip_response=binding.lip_response())
     return mesh, ready, binding.apply(ready(motion[sentence])), labels[sentence]
 
