@@ -30,7 +30,6 @@ GUIDE = 0.5
 DEFORMERS: Registry[Callable[[Mesh, Sequence[str]], Binding]] = Registry("deformer")
 
 
-@DEFORMERS.register("bid")
 def bind_bid(
     mesh: Mesh, names: Sequence[str], *, attachment: str = "side", angle_deg: float = ANGLE_DEG
 ) -> PatchBinding:
@@ -51,12 +50,13 @@ def bind_bid(
     MeshError
         A marker has no vertex on the mesh, two share one, or they span no surface.
     """
+    if attachment not in ATTACHMENTS:
+        raise MeshError(f"There is no attachment '{attachment}'; say 'side' or 'angle'.")
     warm_up()
     chart = _chart(mesh, names)
     return _bind_patches(mesh, names, chart, smooth_net(chart), attachment, angle_deg)
 
 
-@DEFORMERS.register("linear")
 def bind_linear(mesh: Mesh, names: Sequence[str]) -> PatchBinding:
     """Bind a mesh to flat triangles between its markers, attached as the smooth patches are: a baseline.
 
@@ -70,7 +70,6 @@ def bind_linear(mesh: Mesh, names: Sequence[str]) -> PatchBinding:
     return _bind_patches(mesh, names, chart, linear_net(chart), "side", ANGLE_DEG)
 
 
-@DEFORMERS.register("rbf")
 def bind_rbf(mesh: Mesh, names: Sequence[str]) -> LinearBinding:
     """Bind a mesh to its markers by direct RBF displacement (:func:`displacement_basis`): a baseline.
 
@@ -81,6 +80,11 @@ def bind_rbf(mesh: Mesh, names: Sequence[str]) -> LinearBinding:
     """
     _check_markers(mesh, names)
     return LinearBinding(mesh, tuple(names), displacement_basis(mesh, names))
+
+
+DEFORMERS.add("bid", bind_bid)
+DEFORMERS.add("linear", bind_linear)
+DEFORMERS.add("rbf", bind_rbf)
 
 
 def _check_markers(mesh: Mesh, names: Sequence[str]) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
 from corpus_tools.core import InputError, MeshError
 from corpus_tools.mesh import (
@@ -15,14 +16,16 @@ from corpus_tools.mesh import (
     LOWER_LIP,
     STILL_MARKERS,
     UPPER_LIP,
-    PatchBinding,
+    SkinRegion,
     bundled_head,
     bundled_morph_mm,
     displacement_basis,
+    edges_of,
     geodesic_mm,
     jaw_hinge_mm,
     jaw_motion,
     signed_lip_aperture_mm,
+    skin_regions,
     vertex_normals,
 )
 
@@ -47,8 +50,8 @@ def names(head):
 
 
 @pytest.fixture(scope="module")
-def binding(head, names):
-    return DEFORMERS["rbf"](head, names)
+def binding():
+    return bound_head("rbf", "base")[1]
 
 
 def unit_mm(key):
@@ -63,21 +66,6 @@ def bound_head(deformer, character):
     return mesh, DEFORMERS[deformer](mesh, tuple(mesh.markers))
 
 
-def within(bound, vertices):
-    """Leave out vertices on patches that end at a corner of the mouth, which belongs to both lips."""
-    if not isinstance(bound, PatchBinding):
-        return vertices
-    corners = [bound.names.index(n) for n in ("lip_in0", "lip_in4", "lip_out0", "lip_out6")]
-    shared = np.isin(bound.surface.chart.triangles, corners).any(axis=1)
-    a = bound.attachment
-    skin = a.patch < 3 * len(shared)
-    inner = a.vertices[skin][~shared[a.patch[skin] // 3]]
-    inner = np.union1d(inner, list(bound.mesh.markers.values()))
-    kept = vertices[np.isin(vertices, inner)]
-    assert len(kept) > 2
-    return kept
-
-
 @pytest.mark.parametrize("deformer", list(DEFORMERS))
 @pytest.mark.parametrize("character", list(CHARACTERS))
 class TestEveryDeformer:
@@ -88,21 +76,62 @@ class TestEveryDeformer:
         frame = bound.apply(bound.rest_mm[None])
         assert frame.dtype == np.float32
         np.testing.assert_allclose(frame[0], mesh.vertices_mm, atol=2e-4)
+        exact = bound.apply(bound.rest_mm[None], dtype=np.float64)
+        assert np.abs(exact[0] - mesh.vertices_mm).max() <= 1e-9
 
     def test_marker_vertices_follow_their_markers_exactly(self, deformer, character):
         mesh, bound = bound_head(deformer, character)
         moving = [i for i, n in enumerate(bound.names) if n not in STILL_MARKERS]
         at = [mesh.markers[bound.names[i]] for i in moving]
-        expected = np.zeros((len(at), len(bound.names)))
-        expected[np.arange(len(at)), moving] = 1.0
-        np.testing.assert_allclose(bound.response(at), expected, atol=1e-7)
+        shift = np.random.default_rng(3).normal(0, 4, (len(bound.names), 3))
+        frame = bound.apply((bound.rest_mm + shift)[None], {}, np.float64)[0]
+        np.testing.assert_allclose(frame[at] - mesh.vertices_mm[at], shift[moving], atol=1e-6)
 
     def test_lips_never_pull_on_each_other(self, deformer, character):
         mesh, bound = bound_head(deformer, character)
         columns = {side: [bound.names.index(n) for n in side] for side in (UPPER_LIP, LOWER_LIP)}
-        assert not bound.response(within(bound, mesh.lip_pairs[:, 0]))[:, columns[LOWER_LIP]].any()
-        assert not bound.response(within(bound, mesh.lip_pairs[:, 1]))[:, columns[UPPER_LIP]].any()
+        assert not bound.rise(mesh.lip_pairs[:, 0])[:, columns[LOWER_LIP]].any()
+        assert not bound.rise(mesh.lip_pairs[:, 1])[:, columns[UPPER_LIP]].any()
         assert np.abs(bound.lip_response()).max() > 0.5
+
+    def test_no_vertex_of_the_lips_follows_the_wrong_one(self, deformer, character):
+        mesh, bound = bound_head(deformer, character)
+        truth = 0.5 * bundled_morph_mm("jawOpen")
+        at = [mesh.markers[n] for n in bound.names]
+        moved = bound.apply((bound.rest_mm + truth[at])[None], {}, np.float64)[0] - mesh.vertices_mm
+        lips = skin_regions(mesh) == SkinRegion.LIPS
+        least = truth[lips, 1].min()
+        lower, upper = lips & (truth[:, 1] < 0.7 * least), lips & (truth[:, 1] > 0.25 * least)
+        assert min(lower.sum(), upper.sum()) > 20
+        assert not (moved[lower, 1] > 0.5 * least).any()
+        assert not (moved[upper, 1] < 0.5 * least).any()
+
+    @pytest.mark.parametrize(
+        ("unit", "amount"), [("jawOpen", 0.5), ("mouthPucker", 1.0), ("mouthFunnel", 1.0)]
+    )
+    def test_nothing_tears(self, deformer, character, unit, amount):
+        mesh, bound = bound_head(deformer, character)
+        at = [mesh.markers[n] for n in bound.names]
+        heights = [np.ptp(m.vertices_mm[at], axis=0).max() for m in (mesh, bundled_head())]
+        shift = min(heights[0] / heights[1], 1.0) * amount * bundled_morph_mm(unit)[at]
+        frame = bound.apply((bound.rest_mm + shift)[None], {}, np.float64)[0]
+        edges = edges_of(mesh.faces[mesh.part_mask("skin")[mesh.faces].all(axis=1)])
+        ends = [v[edges[:, 0]] - v[edges[:, 1]] for v in (mesh.vertices_mm, frame)]
+        before, after = (np.linalg.norm(e, axis=1) for e in ends)
+        assert np.abs(after - before).max() < 0.6 * np.linalg.norm(shift, axis=1).max() + 2.0
+        assert ((after + 1.0) / (before + 1.0)).max() < 2.6
+
+    def test_eyelids_and_everything_away_from_the_face_stay(self, deformer, character):
+        mesh, bound = bound_head(deformer, character)
+        shift = np.random.default_rng(4).normal(0, 4, (3, len(bound.names), 3))
+        still = bound.apply(bound.rest_mm + shift, {}, np.float64) - mesh.vertices_mm
+        eyes = cKDTree(mesh.vertices_mm[mesh.part_mask("eyes")])
+        lids = mesh.part_mask("skin") & (eyes.query(mesh.vertices_mm)[0] < 6.9)
+        lids[list(mesh.markers.values())] = False
+        assert not still[:, lids].any()
+        assert lids.sum() > 100
+        for part in ("eyes", "upper_teeth", "lower_teeth", "tongue"):
+            assert not still[:, mesh.part_mask(part)].any()
 
 
 @pytest.mark.parametrize("kernel", list(DISPLACEMENT_KERNELS))

@@ -70,5 +70,5 @@ def test_markers_the_mesh_does_not_have_are_named():
 
 
 def test_a_response_of_another_shape_is_refused(ready):
-    with pytest.raises(MeshError, match=r"\(pairs, 66\) was expected"):
+    with pytest.raises(MeshError, match=r"\(pairs, 66, 3\) was expected"):
         prepare_retarget(ready.neutral_mm, ready.names, bundled_head(), lip_response=np.zeros((9, 3)))

@@ -62,7 +62,7 @@ class Editing(param.Parameterized):
     overlap_s = param.Number(default=0.12, bounds=(0.0, 0.5))
     rule = param.Selector(default="shared-phone", objects=["shared-phone", "paper"])
     mesh = param.String(default="base")
-    deformer = param.String(default="rbf")
+    deformer = param.String(default="bid")
     pins = param.ClassSelector(class_=tuple, default=(), doc="Units that must speak target phones.")
     bans = param.ClassSelector(class_=tuple, default=(), doc="Units and recordings that must not be used.")
     options = param.ClassSelector(class_=Options, allow_None=True, default=None, doc="Of the place.")

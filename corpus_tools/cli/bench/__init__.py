@@ -3,7 +3,7 @@
 A topic is a function ``Ground -> list of Row`` entered in :data:`BENCHMARKS`; its module is imported below.
 """
 
-from corpus_tools.cli.bench import cleaning, films, heads, selection, utterance, weightings
+from corpus_tools.cli.bench import bids, cleaning, films, heads, selection, utterance, weightings
 from corpus_tools.cli.bench.command import register, run_bench
 from corpus_tools.cli.bench.rows import BENCHMARKS, Ground, Row
 
@@ -11,6 +11,7 @@ __all__ = [
     "BENCHMARKS",
     "Ground",
     "Row",
+    "bids",
     "cleaning",
     "films",
     "heads",

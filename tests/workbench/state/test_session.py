@@ -44,7 +44,7 @@ def test_every_setting_reaches_the_config(opened):
         "overlap_s": 0.08,
         "rule": "paper",
         "mesh": "male",
-        "deformer": "rbf",
+        "deformer": "bid",
         "pins": ("0-2=time02:0-2",),
         "bans": ("time03", "time04:1-3"),
     }
