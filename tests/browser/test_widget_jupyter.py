@@ -101,7 +101,9 @@ def seek_and_compare(page) -> None:
 
 
 def test_jupyterlab_offline_in_separate_cells(watched, tmp_path, project):
-    context, _ = watched
+    context, watch = watched
+    # JupyterLab asks its own server for what is not there; no word of our modules begins so
+    watch.expected += ["404 (Not Found)", "400 (Bad Request)"]
     context.set_default_timeout(90_000)
     write_notebook(tmp_path / "cells.ipynb")
     settings = tmp_path / "lab"
