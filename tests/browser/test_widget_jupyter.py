@@ -92,12 +92,12 @@ def write_notebook(path: Path) -> None:
 def seek_and_compare(page) -> None:
     """Move the clock from one cell, and see the pixels and the plot's cursor of the others follow."""
     before = page.evaluate(f"() => {FIND}.vsw.hash()")
-    page.evaluate(f"() => {FIND}.vsw.clock.seek(1.5)")
-    assert page.evaluate(f"() => {FIND}.vsw.shown") == 180
+    page.evaluate(f"() => {FIND}.vsw.clock.seek(0.5)")
+    assert page.evaluate(f"() => {FIND}.vsw.shown") == 60
     assert page.evaluate(f"() => {FIND}.vsw.hash()") != before
     draws = page.evaluate(f"() => {FIND}.vsw.draws")
     page.get_by_role("button", name="Play (Space)").click()
-    page.wait_for_function(f"(n) => {FIND}.vsw.clock.t > 1.5 && {FIND}.vsw.draws > n + 2", arg=draws)
+    page.wait_for_function(f"(n) => {FIND}.vsw.clock.t > 0.5 && {FIND}.vsw.draws > n", arg=draws)
 
 
 def test_jupyterlab_offline_in_separate_cells(watched, tmp_path, project):
