@@ -84,3 +84,29 @@ def test_flat_triangles_are_patches_too(heads, serve, browser_page):
     skin = np.frombuffer(shown.view.actor("skin")["ids"], np.uint32)
     wanted = binding.apply(binding.rest_mm + pose, dtype=np.float64)[0, skin]
     assert np.abs(positions(shown, "skin") - wanted).max() < 1e-3
+
+
+def test_several_heads_in_one_view_each_with_its_own_motion(heads, serve, browser_page):
+    mesh, aside = heads["bid"].mesh, np.eye(4)
+    aside[0, 3] = 250.0
+    shifts = {}
+
+    def make():
+        view, actors = MeshView(**SIZE), []
+        for name, kind, matrix in (("left/", "bid", None), ("right/", "linear", aside)):
+            actors += head_actors(mesh, heads[kind].binding, name, matrix)
+            shift = np.random.default_rng(len(name)).normal(0, 2, (1, len(heads[kind].names), 3))
+            shifts[f"{name}skin"] = (shift.astype(np.float32), heads[kind].binding)
+        view.show_actors(actors)
+        view.set_motion(120.0, displacements={name: shift for name, (shift, _) in shifts.items()})
+        return view
+
+    shown = Shown(serve, browser_page, make)
+    skin = np.frombuffer(shown.view.actor("left/skin")["ids"], np.uint32)
+    for name, (shift, binding) in shifts.items():
+        wanted = binding.apply(binding.rest_mm + shift, dtype=np.float64)[0, skin]
+        assert np.abs(positions(shown, name) - wanted).max() < 1e-3
+    lit = shown.pixels().astype(int)
+    halves = [np.abs(half - lit[0, 0]).max(axis=2).mean() for half in np.split(lit, 2, axis=1)]
+    assert min(halves) > 10
+    assert shown.get("v.camera.focal_point[0]") == pytest.approx(125, abs=15)
