@@ -42,6 +42,7 @@ def test_the_head_is_there_at_once_and_space_alone_plays(started, browser_page):
     go.set()
     bar.wait_for(state="hidden")
     browser_page.wait_for_function(f"() => {FIND}.vsw.shown >= 0")
+    browser_page.locator(".vsw-transport button.play:not([disabled])").wait_for()
     browser_page.keyboard.press("Space")
     browser_page.wait_for_function(f"() => {FIND}.vsw.shown > 20")
 

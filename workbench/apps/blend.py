@@ -178,12 +178,17 @@ class BlendPage:
             self.transport.play(shown[selected]["start"], shown[selected]["end"])
 
     def _key(self, action: str, index: int) -> None:
-        session = self.session
         if action == "curve":
             if index < len(PRESETS):
-                session.weighting = list(PRESETS.values())[index]
-            return
-        commands: dict[str, Callable[[], object]] = {
+                self.session.weighting = list(PRESETS.values())[index]
+        elif action in self.commands:
+            self.commands[action]()
+
+    @property
+    def commands(self) -> dict[str, Callable[[], object]]:
+        """What keys do that reach the server: action -> command."""
+        session = self.session
+        return {
             "previous_sentence": lambda: session.step_sentence(-1),
             "next_sentence": lambda: session.step_sentence(1),
             "next_unit": lambda: swap_unit(session, 1),
@@ -200,8 +205,6 @@ class BlendPage:
             "view": self.board.switch_view,
             "cancel": self.desk.cancel,
         }
-        if action in commands:
-            commands[action]()
 
     def _status(self, *events: Any) -> None:
         s = self.session
@@ -217,7 +220,7 @@ class BlendPage:
         if s.status == "opening":
             jobs = f"opening, {100 * s.fraction:.0f} %"
         elif s.working:
-            jobs = "computing"
+            jobs = "computing · Esc cancels"
         self.shell.param.update(status_text=left, measured=measured, jobs_text=jobs)
 
     def close(self) -> None:

@@ -155,7 +155,11 @@ export function renderBoard({ model, el }) {
   face.card.append(slot(model, "face"));
   const tag = document.createElement("div");
   tag.className = "tag";
-  face.card.append(tag, sides(model), overlays(model), inset(model));
+  const busy = document.createElement("div");
+  busy.className = "over busy";
+  busy.setAttribute("role", "status");
+  busy.innerHTML = "<i></i>computing <kbd>Esc</kbd>";
+  face.card.append(tag, busy, sides(model), overlays(model), inset(model));
 
   const curve = section("weighting", "g(u) at the joins");
   curve.head.append(slot(model, "mode"));
@@ -187,9 +191,10 @@ export function renderBoard({ model, el }) {
     warning.textContent = model.warning ? `▲ ${model.warning}` : "";
     warning.title = model.warning;
     root.classList.toggle("stale", model.stale);
+    busy.hidden = !model.working;
     root.classList.toggle("curves", model.shown === "curves");
   };
-  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "shown"]) model.on(name, draw);
+  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "working", "shown"]) model.on(name, draw);
   draw();
   root.append(face.card, curve.card, lane.card);
   return root;

@@ -71,7 +71,8 @@ function drawNamed(ctx, box, x, y, text, colour, p, above) {
 /**
  * @param box [left, top, right, bottom]
  * @param {{overlaps: number[], curves: {name: string, ratios: number[]}[], now: object, other: object}} data
- *   `now` and `other`: {name, overlap, ratio} of the present setting and of setting A (null: the same)
+ *   `now` and `other`: {name, overlap, ratio} of the present setting and of setting A (null: the same; alike: of
+ *   the same fragments, so that its curve is one of those here)
  */
 export function drawEffect(ctx, box, data, p) {
   const [x0, y0, x1, y1] = box;
@@ -97,7 +98,7 @@ export function drawEffect(ctx, box, data, p) {
   };
   for (const c of data.curves) drawLine(c, p.nat, 1, [1.5, 3]);
   const named = (name) => data.curves.find((c) => c.name === name);
-  if (other && named(other.name)) drawLine(named(other.name), p.other, 1.6, [5, 4]);
+  if (other?.alike && named(other.name)) drawLine(named(other.name), p.other, 1.6, [5, 4]);
   if (named(now.name) && !now.moved) drawLine(named(now.name), p.acc, 2.4, []);
   for (const c of data.curves) {
     const ratio = ratioAt(data.overlaps, c.ratios, now.overlap);

@@ -78,7 +78,9 @@ def effect_data(
         "overlaps": list(OVERLAPS_S) if fits else [],
         "curves": [{"name": c.weighting, "ratios": [float(r) for r in c.ratios[:, join]]} for c in curves],
         "now": _dot(result, join),
-        "other": _dot(other, join) if other is not None and same else None,
+        "other": None
+        if other is None or not same
+        else {**_dot(other, join), "alike": other.pieces is result.pieces},
     }
 
 

@@ -98,7 +98,14 @@ def preset_buttons(controls: Controls, label: str, name: str, options: dict[str,
         color="primary",
         sizing_mode="stretch_width",
         margin=0,
-        sx={"& .MuiToggleButton-root": {"flex": "1 1 auto"}},
+        sx={
+            "& .MuiToggleButton-root": {
+                "flex": "1 1 auto",
+                "minWidth": 0,
+                "paddingLeft": 0.5,
+                "paddingRight": 0.5,
+            }
+        },
         stylesheets=[_HIDDEN_LABEL],
     )
     return controls.tie(made, name)

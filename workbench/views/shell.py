@@ -118,6 +118,7 @@ class Board(pn.custom.JSComponent):
     doing = param.String(default="", doc="What is being done; empty when nothing is.")
     left_text = param.String(default="", doc="How long it will take.")
     stale = param.Boolean(default=False)
+    working = param.Boolean(default=False, doc="Something is computed; it is said when it takes a second.")
     side = param.Selector(default="B", objects=["A", "B"], doc="Which of two settings is shown.")
     compared = param.Boolean(default=False, doc="Whether the two settings differ.")
 

@@ -90,6 +90,7 @@ def _components(c: Any, sizes: Any, size: int) -> dict[str, Any]:
                         "backgroundColor": c["panel"],
                     },
                     "&.MuiButton-outlined:hover": {"backgroundColor": c["sunk"]},
+                    "&.MuiButton-outlined.Mui-disabled": {"color": c["ink3"], "opacity": 0.55},
                 }
             },
         },

@@ -165,6 +165,7 @@ class Trajectories(pn.viewable.Viewer):
                         xaxis="bottom" if last else None,
                         xlabel="time, s",
                         ylabel=f"{signal.label}, {'mm/s' if speed else 'mm'}",
+                        yticks=4,
                         show_legend=False,
                         hooks=[_style(theme), self._collect(signal)],
                         default_tools=["xwheel_zoom", "xpan", "reset"],

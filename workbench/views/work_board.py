@@ -212,6 +212,7 @@ class BlendBoard(pn.viewable.Viewer):
         self.board.param.update(
             message=session.message,
             stale=session.working and not shown,
+            working=session.working,
             side=session.side,
             compared=bool(session.difference),
         )
