@@ -143,44 +143,45 @@ def _compiled() -> Callable[..., None]:
 
 def _frames(net: Any, corners: Any, rider: Any, rows: Any, out: Any, block: int) -> None:
     """Fill `out` (n_frames, n, 3) for control shifts (n_control, 3, n_frames), by blocks of frames."""
-    near = np.empty((net.shape[0], 3, block), net.dtype)
-    p = np.empty((3, 3, block), net.dtype)
+    near = np.empty((net.shape[0], 3 * block), net.dtype)
+    p = np.empty((3, 3 * block), net.dtype)
     place = np.empty((3, block), net.dtype)
     for first in range(0, net.shape[2], block):
         n = min(block, net.shape[2] - first)
         for c in range(net.shape[0]):
             for axis in range(3):
                 for f in range(n):
-                    near[c, axis, f] = net[c, axis, first + f]
+                    near[c, axis * n + f] = net[c, axis, first + f]
         for v in range(corners.shape[0]):
             k0, k1, k2, k3, k4 = corners[v, 0], corners[v, 1], corners[v, 2], corners[v, 3], corners[v, 4]
             k5, k6, k7, k8, k9 = corners[v, 5], corners[v, 6], corners[v, 7], corners[v, 8], corners[v, 9]
             u0, u1, u2, w, a, b, d, r0, r1, r2 = rider[v, :10]
             x0, y0, z0, x1, y1, z1, h0, h1, h2 = rider[v, 10:]
-            for axis in range(3):
-                for f in range(n):
-                    b210, b201, b120 = near[k3, axis, f], near[k4, axis, f], near[k5, axis, f]
-                    b021, b102, b012 = near[k6, axis, f], near[k7, axis, f], near[k8, axis, f]
-                    b111 = near[k9, axis, f]
-                    q200 = u0 * near[k0, axis, f] + u1 * b210 + u2 * b201
-                    q020 = u0 * b120 + u1 * near[k1, axis, f] + u2 * b021
-                    q002 = u0 * b102 + u1 * b012 + u2 * near[k2, axis, f]
-                    q110 = u0 * b210 + u1 * b120 + u2 * b111
-                    q101 = u0 * b201 + u1 * b111 + u2 * b102
-                    q011 = u0 * b111 + u1 * b021 + u2 * b012
-                    last = u0 * q101 + u1 * q011 + u2 * q002
-                    p[0, axis, f] = u0 * q200 + u1 * q110 + u2 * q101 - last
-                    p[1, axis, f] = u0 * q110 + u1 * q020 + u2 * q011 - last
-                    p[2, axis, f] = last
+            for f in range(3 * n):
+                b210, b201, b120 = near[k3, f], near[k4, f], near[k5, f]
+                b021, b102, b012 = near[k6, f], near[k7, f], near[k8, f]
+                b111 = near[k9, f]
+                q200 = u0 * near[k0, f] + u1 * b210 + u2 * b201
+                q020 = u0 * b120 + u1 * near[k1, f] + u2 * b021
+                q002 = u0 * b102 + u1 * b012 + u2 * near[k2, f]
+                q110 = u0 * b210 + u1 * b120 + u2 * b111
+                q101 = u0 * b201 + u1 * b111 + u2 * b102
+                q011 = u0 * b111 + u1 * b021 + u2 * b012
+                last = u0 * q101 + u1 * q011 + u2 * q002
+                p[0, f] = u0 * q200 + u1 * q110 + u2 * q101 - last
+                p[1, f] = u0 * q110 + u1 * q020 + u2 * q011 - last
+                p[2, f] = last
             c0, c1 = u0 + a, u1 + b
             for f in range(n):
-                ax, ay, az = x0 + p[0, 0, f], y0 + p[0, 1, f], z0 + p[0, 2, f]
-                bx, by, bz = x1 + p[1, 0, f], y1 + p[1, 1, f], z1 + p[1, 2, f]
+                ax, ay, az = x0 + p[0, f], y0 + p[0, n + f], z0 + p[0, 2 * n + f]
+                bx, by, bz = x1 + p[1, f], y1 + p[1, n + f], z1 + p[1, 2 * n + f]
                 nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
                 h = d / np.sqrt(nx * nx + ny * ny + nz * nz)
-                place[0, f] = r0 + w * (p[2, 0, f] + c0 * p[0, 0, f] + c1 * p[1, 0, f] + (h * nx - h0))
-                place[1, f] = r1 + w * (p[2, 1, f] + c0 * p[0, 1, f] + c1 * p[1, 1, f] + (h * ny - h1))
-                place[2, f] = r2 + w * (p[2, 2, f] + c0 * p[0, 2, f] + c1 * p[1, 2, f] + (h * nz - h2))
+                place[0, f] = r0 + w * (p[2, f] + c0 * p[0, f] + c1 * p[1, f] + (h * nx - h0))
+                place[1, f] = r1 + w * (p[2, n + f] + c0 * p[0, n + f] + c1 * p[1, n + f] + (h * ny - h1))
+                place[2, f] = r2 + w * (
+                    p[2, 2 * n + f] + c0 * p[0, 2 * n + f] + c1 * p[1, 2 * n + f] + (h * nz - h2)
+                )
             row = rows[v]
             for f in range(n):
                 out[first + f, row, 0] = place[0, f]
