@@ -31,7 +31,7 @@ CELLS = (
     "view",
     "transport = Transport(session='cells')\ntransport.load_sound(None, 2.0)\ntransport",
     "import holoviews as hv\n"
-    "hv.extension('bokeh')\n"
+    "hv.extension('bokeh', inline=True)\n"
     "curve = hv.Curve(([0, 2], [0, 1]), 't', 'y').opts(width=500, height=160, toolbar=None)\n"
     "pn.Row(ClockPane(pn.pane.HoloViews(curve), session='cells', width=520))",
 )
@@ -44,6 +44,7 @@ def start(command: list[str], folder: Path, ready: str) -> subprocess.Popen[byte
     paths = os.pathsep.join(p for p in (str(Path.cwd()), os.environ.get("PYTHONPATH", "")) if p)
     private = {f"JUPYTER_{name}_DIR": str(folder / name.lower()) for name in ("CONFIG", "DATA", "RUNTIME")}
     environment = {**os.environ, **private, "PYTHONPATH": paths, "IPYTHONDIR": str(folder / "ipython")}
+    environment["PANEL_INLINE"] = "true"  # as make lab does
     with (folder / "log.txt").open("wb") as log:
         process = subprocess.Popen(
             [sys.executable, "-m", *command], cwd=folder, env=environment, stdout=log, stderr=log
