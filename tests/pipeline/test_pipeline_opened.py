@@ -28,7 +28,10 @@ def test_recordings_hold_clean_face_markers_only(opened_corpus):
     assert not any(n.startswith("head") for n in opened_corpus.markers)
     for recording in opened_corpus.recordings:
         assert np.isfinite(recording.capture.positions_mm).all()
-        assert [s.name for s in recording.capture.history][-2:] == ["remove_head_motion", "kalman_smooth"]
+        steps = [s.name for s in recording.capture.history if s.name != "fill_gaps"]
+        assert steps[-2:] == ["remove_head_motion", "kalman_smooth"]
+        assert recording.capture.history[-1].name == "kalman_smooth"
+    assert any(s.name == "fill_gaps" for r in opened_corpus.recordings for s in r.capture.history)
     filled = [(r.capture.flags & FrameFlag.FILLED).any() for r in opened_corpus.recordings]
     assert all(filled), "every simulated recording has gaps, and they stay flagged"
 
