@@ -42,21 +42,18 @@ def test_offsets_of_all_three_orders_die_away_and_do_not_disturb_each_other(leng
     np.testing.assert_array_equal(quintic_decay(np.array([1.0, 1.7]) * length, length), 0)
 
 
-@given(seeds, lengths)
+@given(seeds, st.floats(0.08, 0.3))
 def test_the_acceleration_goes_on_through_every_join(seed, length):
-    """C2: third differences at the joins are not greater than elsewhere; those of a mere C1 would be."""
+    """C2: accelerations on both sides of a join, each from its own side, meet; a mere C1 leaves the gap."""
     rate = 8000.0
     aligned = pieces(seed, rate_hz=rate)
     motion = join_inertially(aligned, length).values_mm
-    third = np.abs(np.diff(motion, 3, axis=0)).max(axis=(1, 2)) * rate**3
-    smooth = max(np.abs(np.diff(p.motion_mm, 3, axis=0)).max() * rate**3 for p in aligned.pieces)
-    gap = max(
-        max(j.gap_mm / length**3, j.gap_mm_s / length**2, j.gap_mm_s2 / length) for j in _joins(aligned)
-    )
-    for join in aligned.join_times_s:
-        k = round(join * rate)
-        assert third[k - 4 : k + 3].max() < 3 * smooth + 120 * gap
-        assert np.abs(np.diff(captured(aligned), 3, axis=0))[k - 4 : k + 3].max() * rate**3 > third[k]
+    for join in _joins(aligned):
+        k = round(join.time_s * rate)
+        before, after = motion[k - 1 :: -1][:5], motion[k:][:5]
+        first, second = ((2 * s[0] - 5 * s[1] + 4 * s[2] - s[3]) * rate**2 for s in (before, after))
+        jump = np.sqrt(((first - second) ** 2).sum(axis=1).mean())
+        assert jump < 0.1 * join.gap_mm_s2 + 10
 
 
 def _joins(aligned):
