@@ -40,8 +40,9 @@ class Desk:
         self._opening: LatestJob[OpenCorpus] = LatestJob(
             deliver, self._opened, self._not_opened, self._progress
         )
+        self._deliver, self._newest = deliver, 0
         self._results: LatestJob[Result] = LatestJob(
-            deliver, session.accept, self._refused, idle=lambda: session.param.update(working=False)
+            deliver, self._arrived, self._refused, idle=lambda: deliver(self._rested)
         )
         self._effects: LatestJob[Effects] = LatestJob(deliver, self._measured, lambda number, sentence: None)
         self._recordings: LatestJob[Result | None] = LatestJob(
@@ -118,6 +119,23 @@ class Desk:
 
     def _not_opened(self, number: int, sentence: str) -> None:
         self.session.opening_failed(sentence)
+
+    def _arrived(self, number: int, result: Result) -> None:
+        """Move the head at once; what else there is to show of a result has a turn of its own.
+
+        In a drag only the newest result has that turn: the head is never kept waiting by numbers that the next
+        step replaces.
+        """
+        if self.session.move(number, result):
+            self._newest = number
+            self._deliver(lambda: self._show(number, result))
+
+    def _show(self, number: int, result: Result) -> None:
+        if number == self._newest:
+            self.session.accept(number, result)
+
+    def _rested(self) -> None:
+        self.session.working = False
 
     def _refused(self, number: int, sentence: str) -> None:
         self.session.refuse(number, sentence)

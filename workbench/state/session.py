@@ -39,6 +39,12 @@ class Session(Editing):
     selected = param.Integer(default=0, bounds=(0, None), doc="Index of the selected fragment.")
     working = param.Boolean(default=False, doc="A result is being computed.")
     result = param.ClassSelector(class_=Result, allow_None=True, default=None)
+    moving = param.ClassSelector(
+        class_=Result,
+        allow_None=True,
+        default=None,
+        doc="Whose motion the head shows, a moment before `result`.",
+    )
     effects = param.ClassSelector(class_=Effects, allow_None=True, default=None, doc="Of every g(u).")
     recorded = param.ClassSelector(
         class_=Result, allow_None=True, default=None, doc="The capture's own motion."
@@ -94,6 +100,7 @@ class Session(Editing):
             doing="",
             trouble="",
             message="",
+            moving=None,
             result=None,
             selected=0,
             options=None,
@@ -117,7 +124,7 @@ class Session(Editing):
     def close(self) -> None:
         """Leave the corpus: back to the empty state."""
         empty = {"folder": "", "sentence": "", "trouble": "", "message": ""}
-        self.param.update(corpus=None, result=None, status="empty", **empty)
+        self.param.update(corpus=None, moving=None, result=None, status="empty", **empty)
 
     def step_sentence(self, step: int) -> None:
         """Go `step` sentences on (or back), staying inside the corpus."""
@@ -126,6 +133,14 @@ class Session(Editing):
             return
         here = names.index(self.sentence) if self.sentence in names else 0
         self.sentence = names[min(len(names) - 1, max(0, here + step))]
+
+    def move(self, number: int, result: Result) -> bool:
+        """Let the head move as a result says, ahead of :meth:`accept`; False when it is old news."""
+        now = self.request()
+        if number <= self._accepted or now is None or not now.same_target(result.request):
+            return False
+        self.moving = result
+        return True
 
     def accept(self, number: int, result: Result) -> bool:
         """Show a result, unless a newer one is shown already or the person has gone on to something else.
@@ -150,7 +165,7 @@ class Session(Editing):
         current = result.request.config == now.config
         if current and self.options is not None and not self.options.holds(result):
             self.options = None
-        self.param.update(result=result, selected=selected, message="")
+        self.param.update(moving=result, result=result, selected=selected, message="")
         if self.side == "B" and current:
             self.history.settle(max(result.ratios, default=0.0))
             self.edits += 1

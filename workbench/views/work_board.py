@@ -84,6 +84,7 @@ class BlendBoard(pn.viewable.Viewer):
         )
         watch = session.param.watch
         watch(self._theme, "theme")
+        watch(self._moving, "moving")
         watch(self._result, ["result", "other"])
         watch(self._recorded, "recorded")
         watch(self._select, "selected")
@@ -92,7 +93,10 @@ class BlendBoard(pn.viewable.Viewer):
         watch(self._state, ["message", "working", "side", "edits"])
         watch(self._opening, ["status", "fraction", "doing", "corpus", "target_kind", "text"])
         self.lane.param.watch(self._picked, "selected")
-        self.face.show_rest(session.mesh)
+        if session.moving is None:
+            self.face.show_rest(session.mesh)
+        else:
+            self.face.show(session.moving)
         self._curve()
         self._result()
         self._opening()
@@ -217,15 +221,17 @@ class BlendBoard(pn.viewable.Viewer):
             compared=bool(session.difference),
         )
 
+    def _moving(self, event: Any) -> None:
+        if event.new is not None and self.face.result is not event.new:
+            self.face.show(event.new)
+            self._overlays()
+
     def _result(self, *events: Any) -> None:
         result = self._session.result
         if result is None:
             self.lane.clear()
             self.plot.param.update(effect=NO_EFFECT, title="", hint="")
             return
-        if self.face.result is not result:
-            self.face.show(result)
-            self._overlays()
         self.lane.show(result, self._session.other if self._session.side == "B" else None)
         self.lane.selected = self._session.selected
         n = len(result.selection.chosen)
