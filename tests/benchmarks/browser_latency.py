@@ -14,10 +14,12 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import subprocess
 import sys
 import tempfile
 import threading
 import time
+import urllib.request
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -49,6 +51,19 @@ def summary(values_ms: Sequence[float]) -> dict[str, float]:
         "p95_ms": round(float(np.percentile(values_ms, 95)), 1),
         "n": len(values_ms),
     }
+
+
+def wait_for_server(url: str, timeout_s: float = 60.0) -> None:
+    """Wait until a server answers."""
+    until = time.monotonic() + timeout_s
+    while True:
+        try:
+            urllib.request.urlopen(f"{url}static/js/bokeh.min.js", timeout=5).close()
+            return
+        except OSError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(0.05)
 
 
 def wait_drawn(tab: Any) -> float:
@@ -169,13 +184,15 @@ def measure_widget(browser: Any, deformer: str, n_changes: int = 25) -> dict[str
 
 
 def measure_page(browser: Any, corpus: Path, n_steps: int = 24) -> dict[str, Any]:
-    """Measure the blend page on a corpus: a drag of the crossover slider."""
-    from workbench.apps.serving import Options, Workbench, free_port
+    """Measure the blend page on a corpus: a drag of the crossover slider.
 
-    workbench = Workbench(Options(corpus=corpus, browser=False))
-    port = free_port()
-    server = workbench.serve(port=port, threaded=True)
+    The server is a process of its own, as a person has it: here it would share an interpreter with the mouse.
+    """
+    port = chromium.free_port()
+    command = [sys.executable, "-c", "from workbench.apps.main import run; run()"]
+    server = subprocess.Popen([*command, str(corpus), "--no-browser", "--port", str(port)])
     try:
+        wait_for_server(f"http://127.0.0.1:{port}/")
         first = []
         for _ in range(2):  # the first tab also opens the corpus; the second finds the server warm
             tab = browser.new_page(viewport={"width": 1440, "height": 900})
@@ -191,9 +208,8 @@ def measure_page(browser: Any, corpus: Path, n_steps: int = 24) -> dict[str, Any
         rate = playback(tab)
         tab.close()
     finally:
-        for page in list(workbench.pages):
-            page.close()
-        server.stop()
+        server.terminate()
+        server.wait(20)
     return {
         "drag_to_pixels": summary(latencies),
         "of_which_drawing": summary(drawing),

@@ -123,8 +123,8 @@ class Desk:
     def _arrived(self, number: int, result: Result) -> None:
         """Move the head at once; what else there is to show of a result has a turn of its own.
 
-        In a drag only the newest result has that turn: the head is never kept waiting by numbers that the next
-        step replaces.
+        In a drag only the newest result has that turn: the head never waits for numbers that the next step
+        replaces.
         """
         if self.session.move(number, result):
             self._newest = number
