@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
+from textwrap import wrap
 from typing import Annotated, Any
 
 import typer
@@ -17,6 +19,8 @@ from corpus_tools.speech import phone_set
 __all__ = ["register"]
 
 Folder = Annotated[Path, typer.Argument(help="Corpus folder (with corpus.toml).")]
+MOST_SENTENCES = 10
+"""Sentences that `coverage` names, least covered first (our choice: a screen is read, not a list of all)."""
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")]
 
 
@@ -103,8 +107,27 @@ def coverage_(corpus: Folder, json_: Json = False) -> None:
         f"{data['n_diphone_types']} diphone types; leave-one-out coverage mean {data['mean']:.3f}, "
         f"least {data['min']:.3f}; {data['n_full']} of {data['n_utterances']} sentences fully covered."
     )
+    for line in _diphone_lines(data):
+        say(line)
     if json_:
         emit_json(data)
+
+
+def _diphone_lines(data: dict[str, Any]) -> Iterator[str]:
+    """Tell the diphones, most frequent first, then the sentences that the others cover least."""
+    often = sorted(data["diphones"].items(), key=lambda item: (-item[1], item[0]))
+    yield "Diphones, with how often each was recorded:"
+    told = ", ".join(f"{diphone}\u00a0{n}" for diphone, n in often)  # a line never ends inside one
+    for row in wrap(told, 96, break_on_hyphens=False):
+        yield "  " + row.replace("\u00a0", " ")
+    least = sorted((u for u in data["utterances"] if u["missing"]), key=lambda u: (u["coverage"], u["id"]))
+    if not least:
+        return
+    yield "Sentences that the others cover least:"
+    for u in least[:MOST_SENTENCES]:
+        yield f"  {u['id']}  {u['coverage']:.3f}  lacks {', '.join(u['missing'])}"
+    if len(least) > MOST_SENTENCES:
+        yield f"  and {len(least) - MOST_SENTENCES} more (all of them with --json)"
 
 
 def register(app: typer.Typer) -> None:

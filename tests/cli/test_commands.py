@@ -143,7 +143,13 @@ def test_check_units_coverage_print_json(tool, simulated_corpus):
     assert json.loads(out.splitlines()[-1])["recordings"] == report["summary"]["recordings"]
     code, out, _ = tool("coverage", simulated_corpus, "--json")
     assert code == 0
-    assert 0 < json.loads(out.splitlines()[-1])["mean"] <= 1
+    report = json.loads(out.splitlines()[-1])
+    assert 0 < report["mean"] <= 1
+    told = " ".join(out.splitlines()[:-1])
+    assert report["diphones"]
+    assert all(f"{diphone} {n}" in told for diphone, n in report["diphones"].items())
+    least = min(report["utterances"], key=lambda u: u["coverage"])
+    assert f"{least['id']}  {least['coverage']:.3f}  lacks {', '.join(least['missing'])}" in told
 
 
 def test_config_commands(tool, tmp_path):

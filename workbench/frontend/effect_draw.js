@@ -60,12 +60,13 @@ function drawPoint(ctx, x, y, radius, colour) {
   ctx.fill();
 }
 
-function drawNamed(ctx, box, x, y, text, colour, p, above) {
+/** Draw a point and its name above or below it; `clear` is how much further off the name stands. */
+function drawNamed(ctx, box, x, y, text, colour, p, above, clear = 0) {
   drawPoint(ctx, x, y, 5, colour);
   ctx.font = `600 12px ${p.family}`;
   const right = x + 10 + ctx.measureText(text).width > box[2];
   ctx.textAlign = right ? "right" : "left";
-  ctx.fillText(text, x + (right ? -9 : 9), Math.max(box[1] + 12, y + (above ? -7 : 14)));
+  ctx.fillText(text, x + (right ? -9 : 9), Math.max(box[1] + 12, y + (above ? -7 - clear : 14 + clear)));
 }
 
 /**
@@ -107,7 +108,10 @@ export function drawEffect(ctx, box, data, p) {
   const letters = other ? ["A ", "B "] : ["", ""];
   if (other && Number.isFinite(other.ratio)) {
     const text = letters[0] + other.ratio.toFixed(2);
-    drawNamed(ctx, box, toX(other.overlap), toY(other.ratio), text, p.other, p, other.ratio > now.ratio);
+    const [above, apart] = [other.ratio > now.ratio, Math.abs(toY(other.ratio) - toY(now.ratio))];
+    // B's name stands above its point: A's goes above that when the two would meet
+    const clear = above && apart < 14 ? 14 - apart : 0;
+    drawNamed(ctx, box, toX(other.overlap), toY(other.ratio), text, p.other, p, above, clear);
   }
   if (Number.isFinite(now.ratio)) {
     const high = now.ratio > 1;

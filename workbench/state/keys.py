@@ -43,7 +43,7 @@ class KeyBinding:
         """The keys as written on a key cap: "1–7", "Shift Space"."""
         if len(self.keys) > 2:
             return f"{key_label(self.keys[0])}–{key_label(self.keys[-1])}"
-        return " ".join(key_label(k) for k in self.keys)
+        return " or ".join(key_label(k) for k in self.keys)
 
 
 def key_label(key: str) -> str:
