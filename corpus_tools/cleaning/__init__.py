@@ -1,5 +1,6 @@
-"""From raw captures to clean ones: head motion, noise, gaps, neutral pose (paper A section 4)."""
+"""From raw captures to clean ones: head motion, noise, gaps, posture, neutral pose (paper A section 4)."""
 
+from corpus_tools.cleaning.bias import PhoneHalves, RecordingBias, holding, phone_halves, recording_bias
 from corpus_tools.cleaning.corpus import CleanedCorpus, clean_captures, neutral_pose
 from corpus_tools.cleaning.face_model import FaceModel, face_model
 from corpus_tools.cleaning.filling import GAP_FILLERS, fill_gaps
@@ -17,15 +18,20 @@ __all__ = [
     "CleanedCorpus",
     "FaceModel",
     "HeadMotion",
+    "PhoneHalves",
+    "RecordingBias",
     "clean_captures",
     "estimate_head_motion",
     "face_model",
     "fill_gaps",
     "gaps",
+    "holding",
     "kalman_smooth",
     "marker_gaps",
     "measurement_sd_mm",
     "neutral_pose",
+    "phone_halves",
+    "recording_bias",
     "reference_shape",
     "remove_head_motion",
     "smooth_channels",

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from corpus_tools.cleaning import clean_captures, gaps
+from corpus_tools.cleaning import CleanedCorpus, clean_captures, gaps, remove_head_motion
 from corpus_tools.core import Capture, CorpusError, Labels, Utterance, WorkbenchError
 from corpus_tools.io import (
     CorpusDescription,
@@ -22,6 +22,7 @@ from corpus_tools.io import (
 )
 from corpus_tools.pipeline.lacking import axes_advice, what_is_lacking
 from corpus_tools.pipeline.opened import Progress, reference_columns, silent
+from corpus_tools.pipeline.posture import bias_rms_mm, posture_offsets_mm
 from corpus_tools.pipeline.usable import in_order_of, motion_problem, seen_markers, usual_markers
 from corpus_tools.speech import PhoneSet, closure_offset, phone_set, recorded_utterance
 
@@ -175,8 +176,34 @@ def _advice(
         lines.append('frame_time = "centre"' if half else f"audio_offset_s = {value:.3f}")
     return {
         "head_scale_sd": round(scale_sd, 5),
+        "posture_offsets": _postures(description, usable, cleaned, phones.silence),
         "closure_offset_s": None if offset is None else round(float(offset), 4),
         "advice": lines,
+    }
+
+
+def _postures(
+    description: CorpusDescription,
+    usable: Sequence[tuple[Capture, Utterance]],
+    cleaned: CleanedCorpus,
+    silence: str,
+) -> dict[str, Any]:
+    """Return how much of a constant posture the recordings keep, with the head removed as the corpus says."""
+    utterances = [utterance for _, utterance in usable]
+    still = cleaned.captures
+    if not description.head_scale:
+        columns = reference_columns(description, still[0])
+        still = tuple(
+            remove_head_motion(capture, cleaned.reference_mm, columns, allow_scale=False)[0]
+            for capture, _ in usable
+        )
+    offsets = posture_offsets_mm(list(zip(still, utterances, strict=True)), silence)
+    sizes = bias_rms_mm(offsets, still[0].regions)
+    largest = max(sizes, key=lambda name: sizes[name])
+    return {
+        "rms_mm": round(float(np.sqrt(np.mean(np.square(list(sizes.values()))))), 3),
+        "largest": largest,
+        "largest_mm": round(sizes[largest], 3),
     }
 
 
@@ -187,8 +214,9 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
     -------
     dict
         ``recordings``: id, n_frames, rate_hz, duration_s, gaps ([first, last] frames, inclusive), problems;
-        ``summary``: counts; ``head_scale_sd``; ``closure_offset_s``: by how much later (s) the motion would
-        have to lie for the lips to be closed in the bilabials; ``advice``: lines for corpus.toml;
+        ``summary``: counts; ``head_scale_sd``; ``posture_offsets``: what recordings keep constantly
+        (rms over lips and chin, and the largest, mm); ``closure_offset_s``: by how much later (s) the motion
+        would have to lie for the lips to be closed in the bilabials; ``advice``: lines for corpus.toml;
         ``told``: what the corpus lacks, and what it can do without.
 
     Raises
@@ -239,6 +267,11 @@ def health_lines(report: dict[str, Any]) -> list[str]:
     if "head_scale_sd" in report:
         lines.append(
             f"Head scale spread: {100 * report['head_scale_sd']:.2f} % (0.3 % or less in optical capture)."
+        )
+    if posture := report.get("posture_offsets"):
+        lines.append(
+            f"Posture offset of the recordings: {posture['rms_mm']:.2f} mm rms, largest {posture['largest']} "
+            f"{posture['largest_mm']:.2f} mm (taken out of the fragments: cleaning.remove_bias)."
         )
     if report.get("closure_offset_s") is not None:
         lines.append(

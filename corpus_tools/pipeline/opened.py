@@ -34,6 +34,7 @@ from corpus_tools.io import (
     read_description,
 )
 from corpus_tools.pipeline.closing import LipModel, lip_model
+from corpus_tools.pipeline.posture import as_recorded, bias_rms_mm, without_bias
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.pipeline.usable import (
     chosen_markers,
@@ -68,7 +69,8 @@ class OpenCorpus:
     description : CorpusDescription
     phones : PhoneSet
     recordings : tuple of Recording
-        Cleaned face markers (without the head markers) of every usable recording.
+        Cleaned face markers (without the head markers) of every usable recording, freed of the posture that
+        it keeps constantly where `cleaning.remove_bias` says so: units, joins and neutral are made of them.
     skipped : dict of recording id -> sentence
     model : SelectionModel
     neutral_mm : (n_markers, 3) mm
@@ -78,6 +80,8 @@ class OpenCorpus:
         What closure projection needs to know about the speaker's lips.
     scale_sd : float
         Spread of the head scale that was removed; 0 when scaling is off.
+    offsets_mm : dict of recording id -> (n_markers, 3) mm
+        The constant posture that was taken out; empty when `cleaning.remove_bias` is off.
     """
 
     description: CorpusDescription
@@ -89,6 +93,7 @@ class OpenCorpus:
     natural: NaturalDistribution
     lips: LipModel
     scale_sd: float
+    offsets_mm: dict[str, FloatArray]
 
     @property
     def inventory(self) -> UnitInventory:
@@ -128,6 +133,19 @@ class OpenCorpus:
             f"There is no recording '{name}' in '{self.description.folder}'{hint or '.'} "
             "'corpus-tools check' lists those that are there."
         )
+
+    def recorded(self, name: str) -> Capture:
+        """Return the cleaned capture of a recording in its own posture: what a synthesis is compared with.
+
+        A held-out recording is a recording like any other: nothing is taken from it that only its own motion
+        can tell, so that errors against it are those of somebody who never saw it.
+        """
+        return as_recorded(self.recording(name).capture, self.offsets_mm.get(name))
+
+    @property
+    def bias_mm(self) -> dict[str, float]:
+        """Size of the posture taken out of each recording, mm: rms length over lips and chin."""
+        return bias_rms_mm(self.offsets_mm, self.recordings[0].capture.regions)
 
     def utterance(self, name: str) -> Utterance:
         """Return what is said in a recording, as a target utterance."""
@@ -261,8 +279,12 @@ def open_corpus(
         Recording(utterance, face_only(capture))
         for capture, (_, utterance) in zip(cleaned.captures, loaded, strict=True)
     )
+    offsets: dict[str, FloatArray] = {}
+    if config.cleaning.remove_bias:
+        progress(0.86, "finding postures")
+        recordings, offsets = without_bias(recordings, phones.silence)
     progress(0.87, "indexing units")
-    return _assemble(description, phones, recordings, skipped, config, cleaned.scale_sd, progress)
+    return _assemble(description, phones, recordings, skipped, config, cleaned.scale_sd, offsets, progress)
 
 
 def _speech_span(recording: Recording, silence: str) -> tuple[float, float]:
@@ -302,6 +324,7 @@ def _assemble(
     skipped: dict[str, str],
     config: ConfigBase,
     scale_sd: float,
+    offsets_mm: dict[str, FloatArray],
     progress: Progress,
 ) -> OpenCorpus:
     inventory = build_inventory(recordings)
@@ -328,4 +351,5 @@ def _assemble(
         natural=natural,
         lips=lips,
         scale_sd=scale_sd,
+        offsets_mm=offsets_mm,
     )

@@ -8,6 +8,7 @@ from corpus_tools.speech.articulators import (
     closure_threshold_mm,
     jaw_mm,
     lip_aperture_mm,
+    lip_pair_functionals,
     lip_width_mm,
 )
 from corpus_tools.speech.engines import ENGINES, Engine, SpeechRequest, prepare_espeak, speak_text
@@ -33,6 +34,7 @@ __all__ = [
     "jaw_mm",
     "labelled_utterance",
     "lip_aperture_mm",
+    "lip_pair_functionals",
     "lip_width_mm",
     "normalise_text",
     "phone_map",

@@ -19,6 +19,7 @@ __all__ = [
     "closure_threshold_mm",
     "jaw_mm",
     "lip_aperture_mm",
+    "lip_pair_functionals",
     "lip_width_mm",
 ]
 
@@ -60,6 +61,18 @@ def aperture_functional(names: Sequence[str]) -> FloatArray:
     for upper, lower in pairs:
         weights[upper, 1] += 1.0 / len(pairs)
         weights[lower, 1] -= 1.0 / len(pairs)
+    return weights
+
+
+def lip_pair_functionals(names: Sequence[str]) -> FloatArray:
+    """Return the weights of each facing pair of lip markers, (n_pairs, n_markers, 3): upper - lower along y.
+
+    Their mean is :func:`aperture_functional`; no pairs when the layout has no lips.
+    """
+    pairs = _pairs(names)
+    weights = np.zeros((len(pairs), len(names), 3))
+    for index, (upper, lower) in enumerate(pairs):
+        weights[index, upper, 1], weights[index, lower, 1] = 1.0, -1.0
     return weights
 
 

@@ -29,8 +29,8 @@ def test_recordings_hold_clean_face_markers_only(opened_corpus):
     for recording in opened_corpus.recordings:
         assert np.isfinite(recording.capture.positions_mm).all()
         steps = [s.name for s in recording.capture.history if s.name != "fill_gaps"]
-        assert steps[-2:] == ["remove_head_motion", "kalman_smooth"]
-        assert recording.capture.history[-1].name == "kalman_smooth"
+        assert steps[-3:] == ["remove_head_motion", "kalman_smooth", "remove_bias"]
+        assert recording.capture.history[-1].name == "remove_bias"
     assert any(s.name == "fill_gaps" for r in opened_corpus.recordings for s in r.capture.history)
     filled = [(r.capture.flags & FrameFlag.FILLED).any() for r in opened_corpus.recordings]
     assert all(filled), "every simulated recording has gaps, and they stay flagged"

@@ -131,7 +131,7 @@ def test_closing_the_lips_costs_no_accuracy(grid, best):
     """Success as natural or .98, at most .5 % more error; 1.00 and less error were measured."""
     found = {False: [], True: []}
     for pieces in best[::2]:
-        capture = grid.recording(pieces.utterance.name).capture
+        capture = grid.recorded(pieces.utterance.name)
         phones = pieces.utterance.phones.intervals
         speech = (pieces.times_s > phones[0].end_s) & (pieces.times_s < phones[-1].start_s)
         curve = fit_uniform_rbf(capture.start_s, capture.rate_hz, capture.positions_mm)

@@ -147,7 +147,7 @@ def aperture_curves(result: Result, other: Result | None = None) -> dict[str, An
         "other": b"",
     }
     if not result.request.text:
-        capture = corpus.recording(result.request.sentence).capture
+        capture = corpus.recorded(result.request.sentence)
         found["recorded"] = _float32(lip_aperture_mm(capture.positions_mm, capture.names))
         found |= {"recorded_rate": capture.rate_hz, "recorded_start": capture.start_s}
     if other is not None and other.request.same_target(result.request):

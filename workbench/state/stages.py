@@ -194,12 +194,13 @@ class Stages:
     def recorded(self, result: Result) -> Result | None:
         """Return the result with the motion of the recording itself in place of the blend; None for a text.
 
-        The cleaned capture of the sentence moves the same head: what the blend is compared with.
+        The cleaned capture of the sentence, in its own posture, moves the same head: what the blend is
+        compared with.
         """
         request = result.request
         if request.text:
             return None
-        capture = request.corpus.recording(request.sentence).capture
+        capture = request.corpus.recorded(request.sentence)
         trajectory = Trajectory(
             capture.times_s, capture.positions_mm, capture.names, (), capture.flags, capture.history
         )

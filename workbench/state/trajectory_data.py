@@ -65,7 +65,7 @@ def signal_data(result: Result, signal: Signal, speed: bool, n_slots: int = 6) -
     trajectory, request = result.trajectory, result.request
     recorded: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
     if not request.text:
-        capture = request.corpus.recording(request.sentence).capture
+        capture = request.corpus.recorded(request.sentence)
         values = _values(signal, capture.positions_mm, capture.names, capture.rate_hz, speed)
         recorded = (np.asarray(capture.times_s), values)
     joins = trajectory.joins
