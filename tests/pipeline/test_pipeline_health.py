@@ -50,6 +50,11 @@ def test_a_sound_corpus_has_gaps_and_no_other_problem(small_corpus):
         "with_problems": 4,
     }
     assert report["head_scale_sd"] < 0.003
+    posture = report["posture_offsets"]
+    assert posture["rms_mm"] <= posture["largest_mm"] < 0.3
+    assert posture["largest"] in {r["id"] for r in report["recordings"]}
+    told = f"{posture['rms_mm']:.2f} mm rms, largest {posture['largest']} {posture['largest_mm']:.2f} mm"
+    assert any(told in line for line in health_lines(report))
     assert abs(report["closure_offset_s"]) < 0.5 / 120
     assert report["advice"] == []
     for row in report["recordings"]:
