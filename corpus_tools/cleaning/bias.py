@@ -20,8 +20,8 @@ from corpus_tools.core import BoolArray, FloatArray, IntArray, frozen
 
 __all__ = ["PhoneHalves", "RecordingBias", "holding", "phone_halves", "recording_bias"]
 
-RIDGE = 1e-9
-"""Of the normal equations, relative: offsets of recordings that share no cell with others come out as 0."""
+RIDGE = 1e-8
+"""Of the normal equations, per frame of a recording: those that share no cell with others get no offset."""
 
 DOUBT = 3.0
 """A half phone this many times as far off as the median one counts a quarter (our choice)."""
@@ -169,7 +169,7 @@ def _solve(
         count = np.asarray((by_row @ in_cell.T).todense())
         n = np.maximum(count.sum(axis=0), TINY)
         normal = np.diag(count.sum(axis=1)) - (count / n) @ count.T
-        normal += max(RIDGE * normal.trace() / n_rows, TINY) * np.eye(n_rows)
+        normal += max(RIDGE * count.sum() / n_rows, TINY) * np.eye(n_rows)
         sums = by_cell @ y
         b = np.linalg.solve(normal, by_row @ y - (count / n) @ sums)
         means = (sums - count.T @ b) / n[:, None]

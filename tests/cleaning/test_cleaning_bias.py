@@ -124,16 +124,20 @@ def test_own_frames_do_not_inform_the_own_phone_means(seed):
         np.testing.assert_allclose(total / weights, b[r], atol=1e-6)
 
 
-def test_one_recording_alone_has_no_offset():
-    halves, _ = corpus(1, n=1, noise_mm=0.5)
-    assert np.abs(recording_bias(halves).offsets_mm).max() < 1e-9
+@given(SEEDS)
+def test_one_recording_alone_has_no_offset(seed):
+    halves, _ = corpus(seed, n=1, noise_mm=0.5)
+    for rounds in (0, 2):
+        assert np.abs(recording_bias(halves, rounds).offsets_mm).max() < 1e-9
 
 
-def test_recordings_that_share_no_phone_have_no_offsets():
-    halves, _ = corpus(2, n=2, noise_mm=0.5)
+@given(SEEDS)
+def test_recordings_that_share_no_phone_have_no_offsets(seed):
+    halves, _ = corpus(seed, n=2, noise_mm=0.5)
     other = tuple((p + "'", n, h) for p, n, h in halves[1].cells)
     apart = [halves[0], PhoneHalves(other, halves[1].means_mm + 3.0, halves[1].n_frames)]
-    assert np.abs(recording_bias(apart).offsets_mm).max() < 1e-6
+    for rounds in (0, 2):
+        assert np.abs(recording_bias(apart, rounds).offsets_mm).max() < 1e-3
 
 
 def test_an_offset_of_half_a_recording_is_hardly_trusted():
