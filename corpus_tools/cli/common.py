@@ -16,9 +16,18 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from corpus_tools.core import WorkbenchError
+from corpus_tools.core import InputError, WorkbenchError
 
-__all__ = ["EXIT_BUG", "EXIT_INPUT", "StoppedByUser", "emit_json", "guarded", "progress_bar", "say"]
+__all__ = [
+    "EXIT_BUG",
+    "EXIT_INPUT",
+    "OneSentence",
+    "StoppedByUser",
+    "emit_json",
+    "guarded",
+    "progress_bar",
+    "say",
+]
 
 EXIT_INPUT = 2
 EXIT_BUG = 1
@@ -59,6 +68,31 @@ def progress_bar(title: str) -> Iterator[Callable[[float, str], None]]:
     with bar:
         task = bar.add_task(title, total=1.0)
         yield lambda fraction, what: bar.update(task, completed=fraction, description=what)
+
+
+class OneSentence:
+    """Goes before a command class of typer: a misspelt option costs one sentence, as other mistakes do."""
+
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Run a command; what typer would print or swallow itself is raised instead."""
+        try:
+            code = super().main(*args, **(extra | {"standalone_mode": False}))  # type: ignore[misc]
+        except SystemExit as stop:
+            if isinstance(stop.__context__, BrokenPipeError):
+                raise stop.__context__ from None
+            raise
+        except Exception as error:
+            if type(error).__name__ == "NoArgsIsHelpError":
+                error.show()  # type: ignore[attr-defined]
+                raise SystemExit(2) from None
+            if not hasattr(error, "format_message"):
+                raise
+            place = getattr(getattr(error, "ctx", None), "command_path", "corpus-tools")
+            sentence = error.format_message().rstrip(".")
+            raise InputError(f"{sentence}; '{place} --help' lists what there is.") from None
+        if isinstance(code, int) and code:
+            raise SystemExit(code)
+        return code
 
 
 class StoppedByUser(BaseException):

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import sys
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from typer.core import TyperGroup
 
 import corpus_tools
 from corpus_tools.cli import bench, config, corpus, demo, grammar, synth
-from corpus_tools.cli.common import guarded, say
-from corpus_tools.core import InputError
+from corpus_tools.cli.common import OneSentence, guarded, say
 
 __all__ = ["app", "run"]
 
@@ -29,29 +28,8 @@ Begin with your own recordings:
 """
 
 
-class _Commands(TyperGroup):
-    """The commands; a misspelt option costs one sentence, as every other mistake does."""
-
-    def main(self, *args: Any, **extra: Any) -> Any:
-        """Run a command; what typer would print or swallow itself is raised instead."""
-        try:
-            code = super().main(*args, **(extra | {"standalone_mode": False}))
-        except SystemExit as stop:
-            if isinstance(stop.__context__, BrokenPipeError):
-                raise stop.__context__ from None
-            raise
-        except Exception as error:
-            if type(error).__name__ == "NoArgsIsHelpError":
-                error.show()  # type: ignore[attr-defined]
-                raise SystemExit(2) from None
-            if not hasattr(error, "format_message"):
-                raise
-            place = getattr(getattr(error, "ctx", None), "command_path", "corpus-tools")
-            sentence = error.format_message().rstrip(".")
-            raise InputError(f"{sentence}; '{place} --help' lists what there is.") from None
-        if isinstance(code, int) and code:
-            raise SystemExit(code)
-        return code
+class _Commands(OneSentence, TyperGroup):
+    """The commands."""
 
 
 app = typer.Typer(

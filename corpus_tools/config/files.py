@@ -29,11 +29,18 @@ def load_config(path: str | Path) -> ConfigBase:
     """
     file = Path(path)
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
+        data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise ConfigError(f"There is no config file '{file}'; check the path given to --config.") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"The config file '{file}' cannot be read: {error}.") from None
+    except UnicodeDecodeError:
+        raise ConfigError(
+            f"The config file '{file}' cannot be read: it is not UTF-8 text; save it again as UTF-8."
+        ) from None
+    except (OSError, RecursionError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(
+            f"The config file '{file}' cannot be read: {reason}; give a file that the workbench exported."
+        ) from None
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"The config file '{file}' is not TOML: {error}; export it again.") from None
     return config_from_dict(data, str(file))

@@ -25,6 +25,9 @@ __all__ = [
 SCHEMA = 1
 """Number of the layout of config files; older numbers are migrated, newer ones refused."""
 
+LONGEST_SHOWN = 60
+"""Characters of a wrong value that a sentence repeats."""
+
 
 class ConfigBase(BaseModel):
     """Schema number, provenance, and one attribute per registered section."""
@@ -57,6 +60,12 @@ def _known_keys(place: tuple[Any, ...]) -> list[str]:
     return []
 
 
+def _shown(value: Any) -> str:
+    """Return a value for a sentence: a long one by its beginning."""
+    text = repr(value)
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."
+
+
 def _sentence(error: Mapping[str, Any], where: str) -> str:
     place = tuple(error["loc"])
     key = ".".join(str(p) for p in place)
@@ -65,7 +74,7 @@ def _sentence(error: Mapping[str, Any], where: str) -> str:
         hint = suggestion(str(place[-1]), known) or f"; known here: {', '.join(known)}."
         return f"{where}: unknown key '{key}'{hint}"
     what = str(error["msg"]).removeprefix("Value error, ")
-    return f"{where}: '{key}' is {error.get('input')!r}: {what[0].lower()}{what[1:]}."
+    return f"{where}: '{key}' is {_shown(error.get('input'))}: {what[0].lower()}{what[1:]}."
 
 
 def config_from_dict(data: Mapping[str, Any], where: str = "config") -> ConfigBase:
@@ -74,13 +83,16 @@ def config_from_dict(data: Mapping[str, Any], where: str = "config") -> ConfigBa
     Raises
     ------
     ConfigError
-        Unknown or misspelt keys, or values out of range; all of them in one sentence each.
+        Unknown or misspelt keys, or values out of range: one sentence on the first, and how many more.
     """
     try:
         return Config.model_validate(dict(data))
     except ValidationError as error:
-        problems = [_sentence(e, where) for e in error.errors(include_url=False)]
-        raise ConfigError(" ".join(problems[:3])) from None
+        first, *others = error.errors(include_url=False)
+        sentence = _sentence(first, where)
+        if others:
+            sentence = f"{sentence.rstrip('.?')}; {len(others)} more of its values are wrong."
+        raise ConfigError(sentence) from None
 
 
 def config_with(config: ConfigBase, **changes: Any) -> ConfigBase:

@@ -70,9 +70,9 @@ class SpeechSettings(Section):
 class CleaningSettings(Section):
     """Paper A section 4: noise, gaps, head motion."""
 
-    cutoff_hz: float = Field(10.0, gt=0, le=60, description="Kalman smoother: frequency kept, Hz.")
+    cutoff_hz: float = Field(10.0, ge=0.1, le=60, description="Kalman smoother: frequency kept, Hz.")
     head_cutoff_mm: float = Field(
-        1.0, gt=0, le=20, description="Residual at which a head marker is doubted, mm."
+        1.0, ge=0.001, le=20, description="Residual at which a head marker is doubted, mm."
     )
     head_iterations: int = Field(6, ge=1, le=50, description="Reweighting rounds of the head-motion fit.")
     gap_method: str = Field("pca-gp", description="Gap filling, by name: pca-gp, dct (paper A) or kalman.")
@@ -91,13 +91,19 @@ class SelectionSettings(Section):
     """Paper A section 5.1.1: which fragments speak the utterance."""
 
     method: str = Field("viterbi", description="Method id: greedy (as printed, mended) or viterbi.")
-    duration: float = Field(1.0, ge=0, description="Weight of the difference in phone timing.")
-    context: float = Field(0.3, ge=0, description="Weight of the neighbours left and right of the unit.")
-    backoff: float = Field(2.0, ge=0, description="Cost of a phone that its viseme class stands in for.")
-    flagged: float = Field(1.0, ge=0, description="Weight of filled or doubtful frames inside the unit.")
-    join: float = Field(1.0, ge=0, description="Weight of the posture distance at a join.")
+    duration: float = Field(1.0, ge=0, le=1e6, description="Weight of the difference in phone timing.")
+    context: float = Field(
+        0.3, ge=0, le=1e6, description="Weight of the neighbours left and right of the unit."
+    )
+    backoff: float = Field(
+        2.0, ge=0, le=1e6, description="Cost of a phone that its viseme class stands in for."
+    )
+    flagged: float = Field(
+        1.0, ge=0, le=1e6, description="Weight of filled or doubtful frames inside the unit."
+    )
+    join: float = Field(1.0, ge=0, le=1e6, description="Weight of the posture distance at a join.")
     velocity: float = Field(
-        0.3, ge=0, description="Weight of the velocity distance at a join, relative to join."
+        0.3, ge=0, le=1e6, description="Weight of the velocity distance at a join, relative to join."
     )
     allow_backoff: bool = Field(True, description="Let a viseme class stand in where a diphone is missing.")
     components: int = Field(12, ge=1, le=60, description="Principal components of the join distance.")

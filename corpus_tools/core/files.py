@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import shutil
 import tempfile
@@ -14,9 +15,16 @@ from corpus_tools.core.errors import OutputError
 __all__ = ["atomic_file", "atomic_folder", "check_writable"]
 
 
+_FULL = {getattr(errno, name, None) for name in ("ENOSPC", "EDQUOT")}
+
+
+def _advice(error: OSError, place: str) -> str:
+    return "free space there, or choose another disk" if error.errno in _FULL else f"choose a {place}"
+
+
 def _refusal(path: Path, error: OSError) -> OutputError:
-    reason = error.strerror or str(error)
-    return OutputError(f"Cannot write to '{path}': {reason}; choose a folder you may write to.")
+    reason, advice = error.strerror or str(error), _advice(error, "folder you may write to")
+    return OutputError(f"Cannot write to '{path}': {reason}; {advice}.")
 
 
 def check_writable(path: Path) -> None:
@@ -51,8 +59,8 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[Path]:
         temporary.chmod(0o666 & ~umask)
         temporary.replace(target)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise OutputError(f"Cannot write '{target}': {reason}; choose a place you may write to.") from error
+        reason, advice = error.strerror or str(error), _advice(error, "place you may write to")
+        raise OutputError(f"Cannot write '{target}': {reason}; {advice}.") from error
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)

@@ -28,6 +28,8 @@ __all__ = [
 
 CORPUS_FILE = "corpus.toml"
 SCHEMA = 1
+FASTEST_HZ = 1e5
+LONGEST_OFFSET_S = 3600.0
 
 _CHOICES = {"frame_time": ("start", "centre")}
 _NEEDED = ("motion", "phones", "phone_tier", "language", "reference_markers")
@@ -107,8 +109,6 @@ def _check_value(where: str, key: str, value: Any) -> Any:
     if not isinstance(value, wanted) or (wanted is int and isinstance(value, bool)):
         words = {str: "text in quotes", bool: "true or false", float: "a number", int: "a whole number"}
         raise CorpusError(f"{where}: {key} = {value!r} is not {words.get(wanted, 'a list of names')}.")
-    if isinstance(value, float) and not math.isfinite(value):
-        raise CorpusError(f"{where}: {key} = {value} is not a finite number.")
     if key in _NEEDED and not value.strip():
         raise CorpusError(f"{where}: {key} is empty; {_wanted_word(key)} was expected.")
     if key == "marker_units" and value and mm_per(value) is None:
@@ -118,11 +118,20 @@ def _check_value(where: str, key: str, value: Any) -> Any:
         raise CorpusError(f"{where}: {key} = '{value}' is none of {known}{hint or '.'}")
     if key == "marker_axes":
         parsed_axes(str(value), where)
-    if key == "rate_hz" and float(value) < 0:
+    if isinstance(value, float):
+        _check_number(where, key, value)
+    return value
+
+
+def _check_number(where: str, key: str, value: float) -> None:
+    if not math.isfinite(value):
+        raise CorpusError(f"{where}: {key} = {value} is not a finite number.")
+    if key == "rate_hz" and not 0 <= value <= FASTEST_HZ:
         raise CorpusError(
             f"{where}: rate_hz = {value:g} is no frame rate; a positive number of Hz was expected."
         )
-    return value
+    if key == "audio_offset_s" and abs(value) > LONGEST_OFFSET_S:
+        raise CorpusError(f"{where}: audio_offset_s = {value:g} is more than an hour; seconds were expected.")
 
 
 def parsed_axes(text: str, where: str) -> tuple[tuple[int, int, int], tuple[float, float, float]]:

@@ -20,6 +20,7 @@ from corpus_tools.io.textgrid_layout import (
     json_text,
     long_text,
     masked,
+    odd_line,
     short_text,
 )
 
@@ -85,7 +86,12 @@ def _parsed(text: str) -> Labels:
     safe, strings = masked(text)
     if has_negative_times(safe):
         raise LabelError("it holds times below 0 s; shift its times in Praat so that they start at 0.")
-    labels = _labels(textgrid_io.parseTextgridStr(safe, includeEmptyIntervals=True), strings)
+    try:
+        labels = _labels(textgrid_io.parseTextgridStr(safe, includeEmptyIntervals=True), strings)
+    except praat_errors.PraatioException:
+        if line := odd_line(safe):
+            raise LabelError(f"the line '{line[:80]}' is not as Praat writes it: {_ADVICE}.") from None
+        raise
     _check_complete(labels, *declared_sizes(safe))
     return labels
 

@@ -10,11 +10,24 @@ import numpy as np
 from corpus_tools.core import Interval, Labels, PointTier, Tier
 from corpus_tools.core.labels import TIME_TOLERANCE_S
 
-__all__ = ["declared_sizes", "has_negative_times", "json_text", "long_text", "masked", "short_text"]
+__all__ = [
+    "declared_sizes",
+    "has_negative_times",
+    "json_text",
+    "long_text",
+    "masked",
+    "odd_line",
+    "short_text",
+]
 
 _STRING = r'"(?:[^"]|"")*"'
 _LONG_STRING = re.compile(rf"(\bclass ?= ?)?({_STRING})")
 _TOKEN = re.compile(rf'{_STRING}|[^\s"]+')
+_PRAAT_LINE = re.compile(
+    r'\s*(File type = "ooTextFile"|Object class = "TextGrid"|(xmin|xmax|number) = [\d.e+-]+|tiers\? <exists>|'
+    r'size = \d+|item \[\d*\]:|(class|name|text|mark) = ".*"|(intervals|points): size = \d+|'
+    r"(intervals|points) \[\d+\]:)?\s*"
+)
 _CLASSES = ('"IntervalTier"', '"TextTier"')
 
 
@@ -77,6 +90,11 @@ def declared_sizes(text: str) -> tuple[int, list[int]]:
         sizes = re.findall(r'"(?:IntervalTier|TextTier)"\s+"\d+"\s+\S+\s+\S+\s+(\d+)\s', body)
         count = re.match(r"\s*(\d+)\s", body)
     return int(count[1]) if count else 0, [int(n) for n in sizes]
+
+
+def odd_line(text: str) -> str:
+    """Return the first line of a long TextGrid that Praat would not write; empty when there is none."""
+    return next((line.strip() for line in text.splitlines() if not _PRAAT_LINE.fullmatch(line)), "")
 
 
 def has_negative_times(text: str) -> bool:

@@ -20,7 +20,7 @@ from corpus_tools.io import (
     read_description,
     reading_notes,
 )
-from corpus_tools.pipeline.lacking import axes_advice, what_is_lacking
+from corpus_tools.pipeline.lacking import axes_advice, what_is_lacking, what_is_left_out
 from corpus_tools.pipeline.opened import Progress, reference_columns, silent
 from corpus_tools.pipeline.posture import bias_rms_mm, posture_offsets_mm
 from corpus_tools.pipeline.usable import in_order_of, motion_problem, seen_markers, usual_markers
@@ -236,7 +236,7 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
         _check_gaps(entry)
     _check_alike(entries)
     progress(0.75, "head motion and lip closures")
-    told = what_is_lacking(description)
+    told = [*what_is_lacking(description), *what_is_left_out(description, [f.id for f in files])]
     try:
         advice = _advice(description, _usable(description, entries, phones), phones)
     except CorpusError as error:  # no rigid markers: a corpus that is only read needs none

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from corpus_tools.core import Capture, CorpusError
+from corpus_tools.core.errors import suggestion
 from corpus_tools.io import CorpusDescription, parsed_axes
 
-__all__ = ["axes_advice", "what_is_lacking"]
+__all__ = ["axes_advice", "what_is_lacking", "what_is_left_out"]
 
 _AS_THEY_ARE = "x,y,z"
 
@@ -27,6 +28,20 @@ def axes_advice(description: CorpusDescription, captures: Sequence[Capture]) -> 
             continue
         return [] if axes == _AS_THEY_ARE else [f'marker_axes = "{axes}"']
     return []
+
+
+def what_is_left_out(description: CorpusDescription, ids: Collection[str]) -> list[str]:
+    """Say how many recordings 'exclude' leaves out, and which of its names stand for none."""
+    left_out = set(description.exclude) & set(ids)
+    told = []
+    if left_out:
+        told.append(
+            f"'exclude' in '{description.file}' leaves out {len(left_out)} of the {len(ids)} recordings."
+        )
+    for name in sorted(set(description.exclude) - left_out):
+        hint = suggestion(name, ids) or "; give the names of recordings."
+        told.append(f"'exclude' in '{description.file}' names '{name}', which is no recording{hint}")
+    return told
 
 
 def what_is_lacking(description: CorpusDescription) -> list[str]:

@@ -71,6 +71,11 @@ def test_every_field_is_written_bounded_and_described(name):
         ({"blend": {"curve_weights": [1, 2, 3]}}, ["blend.curve_weights", "at least 4"]),
         ({"blend": {"curve_weights": [1, 2, -3, 1]}}, ["blend.curve_weights.2", "-3", "greater than"]),
         ({"blend": {"curve_weights": [0, 0, 0, 0]}}, ["blend.curve_weights", "all weights are 0"]),
+        ({"blend": {"curve_weights": [1] * 500}}, ["blend.curve_weights", "1,...: ", "at most 64"]),
+        ({"blend": {"curve_weights": [-1] * 5}}, ["blend.curve_weights.0", " more of its values"]),
+        ({"cleaning": {"cutoff_hz": 1e-300}}, ["cleaning.cutoff_hz", "0.1"]),
+        ({"cleaning": {"head_cutoff_mm": 1e-300}}, ["cleaning.head_cutoff_mm", "0.001"]),
+        ({"selection": {"join": 1e308}}, ["selection.join", "1000000"]),
         ({"schema": 99}, ["schema", "99"]),
         ({"blend": 3}, ["blend"]),
     ],
@@ -80,6 +85,8 @@ def test_bad_data_is_refused_by_name(data, words):
         config_from_dict(data, "mine.toml")
     for word in ["mine.toml", *words]:
         assert word in str(caught.value)
+    assert str(caught.value).count("mine.toml") == 1  # one sentence
+    assert len(str(caught.value)) < 300
 
 
 def test_configs_do_not_change():
@@ -94,6 +101,7 @@ def test_configs_do_not_change():
         (b"corpsu = 1\n", "corpsu"),
         (b"a = [", "TOML"),
         (b"\xff\xfe\x00", "cannot be read"),
+        (b"a = " + b"[" * 100000, "cannot be read"),
         (None, "no config file"),
     ],
 )
@@ -104,6 +112,12 @@ def test_bad_files_are_named(tmp_path, content, word):
     with pytest.raises(ConfigError, match=word) as caught:
         load_config(path)
     assert "tuned.toml" in str(caught.value)
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path):
+    path = tmp_path / "tuned.toml"
+    path.write_bytes(b"\xef\xbb\xbf[blend]\nshape = 0.5\n")
+    assert load_config(path).blend.shape == 0.5
 
 
 def test_write_is_whole_or_nothing(tmp_path):

@@ -1,5 +1,8 @@
 """Files and folders appear whole or not at all."""
 
+import errno
+import os
+
 import pytest
 
 from corpus_tools.core import OutputError, atomic_file, atomic_folder, check_writable
@@ -57,4 +60,14 @@ def test_unwritable_places_are_named(tmp_path, place):
 
 def test_check_writable_leaves_nothing(tmp_path):
     check_writable(tmp_path / "a" / "b")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("atomic", [atomic_file, atomic_folder])
+def test_a_full_disk_is_told_to_be_emptied(tmp_path, atomic):
+    with (
+        pytest.raises(OutputError, match="No space left on device; free space there"),
+        atomic(tmp_path / "o"),
+    ):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     assert not list(tmp_path.iterdir())

@@ -82,3 +82,12 @@ def test_the_same_markers_in_another_order_are_the_same_markers(tmp_path, second
     order = [NAMES.index(n) for n in second]
     MOTION_WRITERS["csv"](tmp_path / "mé my takes" / "b.csv", POSITIONS[:, order], second, 100.0)
     assert [row["problems"] for row in check_corpus(folder)["recordings"]] == [[], []]
+
+
+def test_what_exclude_leaves_out_is_told_and_a_name_that_is_none(tmp_path):
+    folder = corpus(tmp_path, "csv")
+    description = read_description(folder)
+    write_description(dataclasses.replace(description, exclude=("a b", "a c")))
+    told = check_corpus(folder)["told"]
+    assert any("leaves out 1 of the 1 recordings" in line for line in told)
+    assert any("'a c', which is no recording; did you mean 'a b'?" in line for line in told)

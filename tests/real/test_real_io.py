@@ -101,14 +101,17 @@ def test_praatio_samples_read(corpora):
     assert read_audio(folder / "mary.wav").duration_s == pytest.approx(1.87, abs=0.01)
 
 
-@pytest.mark.parametrize("name", ["msajc003", "msajc003_new"])
-def test_textgrids_that_praat_cannot_read_either_are_refused(corpora, name):
+@pytest.mark.parametrize(
+    ("name", "line"), [("msajc003", 'File type= "ooTextFile"'), ("msajc003_new", "levels? <exists>")]
+)
+def test_textgrids_that_praat_cannot_read_either_are_refused(corpora, name, line):
     path = corpora / "emu_ae" / f"{name}.TextGrid"
     before = path.read_bytes()
     with pytest.raises(LabelError) as caught:
         read_labels(path)
     assert str(path) in str(caught.value)
     assert "TextGrid was expected" in str(caught.value)
+    assert f"the line '{line}'" in str(caught.value)
     assert "\n" not in str(caught.value)
     assert path.read_bytes() == before
 

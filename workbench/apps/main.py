@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer.core import TyperCommand
 
 import corpus_tools
-from corpus_tools.cli.common import guarded, say
+from corpus_tools.cli.common import OneSentence, guarded, say
 from corpus_tools.core import InputError
 
 __all__ = ["APPS", "app", "run"]
@@ -32,7 +34,11 @@ def _check_app(name: str) -> None:
         raise InputError(f"There is no dashboard called '{name}'; there is: {', '.join(APPS)}.")
 
 
-@app.command()
+class _Command(OneSentence, TyperCommand):
+    """The one command."""
+
+
+@app.command(cls=_Command)
 def workbench(
     corpus: Annotated[
         Path | None, typer.Argument(help="Corpus folder; the simulated starter corpus when left out.")
@@ -82,7 +88,9 @@ def workbench(
     server = Workbench(options)
     if port:
         say(f"The workbench is at http://{host}:{port}/ (stop it with Ctrl-C).")
+    signal.signal(signal.SIGTERM, lambda signum, frame: signal.raise_signal(signal.SIGINT))
     server.serve()
+    say("The workbench has stopped.")
 
 
 def _check(options: object) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import secrets
 import socket
 import threading
@@ -109,6 +110,8 @@ def check_options(options: Options) -> None:
             f"There is no corpus.toml in '{options.corpus}': make a corpus with 'corpus-tools init', "
             "or give the folder that holds it."
         )
+    if options.password_file is not None:
+        read_password(options.password_file)
     _check_port(options.host, options.port)
 
 
@@ -122,8 +125,9 @@ def _check_port(host: str, port: int) -> None:
             probe.bind((host, port))
         except OSError as error:
             reason = error.strerror or str(error)
+            other = "--host" if isinstance(error, socket.gaierror) else "--port"
             raise InputError(
-                f"Cannot listen on {host} port {port}: {reason}; choose another with --port."
+                f"Cannot listen on {host} port {port}: {reason}; choose another with {other}."
             ) from None
 
 
@@ -164,6 +168,7 @@ class Workbench:
 
     def page(self) -> Any:
         """Return the page of a new tab."""
+        _expect_closed_tabs()
         doc = pn.state.curdoc
 
         def deliver(action: Callable[[], None]) -> None:
@@ -202,13 +207,22 @@ class Workbench:
                 "basic_auth": read_password(options.password_file),
                 "cookie_secret": secrets.token_hex(32),
             }
+        try:
+            return self._start(port, threaded, options.browser if browser is None else browser, guard)
+        finally:
+            if not threaded:
+                for page in tuple(self.pages):
+                    self._gone(page)  # what still computes is told to stop, or the process waits for it
+
+    def _start(self, port: int, threaded: bool, browser: bool, guard: dict[str, Any]) -> Any:
+        options = self.options
         return pn.serve(
             {"/": self.page},
             port=port,
             address=options.host,
             websocket_origin=list(options.origins)
             or [f"{name}:{port}" for name in ("127.0.0.1", "localhost")],
-            show=options.browser if browser is None else browser,
+            show=browser,
             title="Visual speech workbench",
             static_dirs={ASSETS_ROUTE: str(FRONTEND / "fonts")},
             websocket_max_message_size=MAX_MESSAGE_BYTES,
@@ -216,6 +230,19 @@ class Workbench:
             verbose=False,
             **guard,
         )
+
+
+def _expect_closed_tabs() -> None:
+    """Let a tab be closed while something is sent to it: no fault, and nothing for the log."""
+
+    def told(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        if type(context.get("exception")).__name__ not in ("WebSocketClosedError", "StreamClosedError"):
+            loop.default_exception_handler(context)
+
+    try:
+        asyncio.get_running_loop().set_exception_handler(told)
+    except RuntimeError:  # not in a server
+        return
 
 
 def _at_once(action: Callable[[], None]) -> None:

@@ -1,13 +1,16 @@
 """The command: wrong arguments are one sentence and exit 2; only loopback without a password."""
 
+import asyncio
 import socket
 import subprocess
 import sys
+import time
 
 import pytest
+from tornado.websocket import WebSocketClosedError
 
 from corpus_tools.core import InputError
-from workbench.apps.serving import Options, check_options, read_password
+from workbench.apps.serving import Options, _expect_closed_tabs, check_options, free_port, read_password
 
 
 def workbench(*arguments):
@@ -25,6 +28,8 @@ def workbench(*arguments):
         (("--host", "0.0.0.0"), "--password-file"),
         (("--port", "99999"), "99999"),
         (("--root", "/no/such/folder"), "--root"),
+        (("--port", "22x"), "--port"),
+        (("--password-file", "/no/such/file"), "/no/such/file"),
     ],
 )
 def test_a_mistake_is_one_sentence_and_exit_2(arguments, word):
@@ -33,6 +38,33 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, word):
     assert word in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert "Traceback" not in done.stderr
+    assert not done.stdout  # it does not say that it serves, and then that it cannot
+
+
+def test_it_stops_when_it_is_told_to_and_says_so():
+    code = "from workbench.apps.main import run; run()"
+    command = [sys.executable, "-c", code, "--no-browser", "--port", str(free_port())]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        assert "is at" in server.stdout.readline()
+        time.sleep(0.1)
+        server.terminate()
+        out, err = server.communicate(timeout=60)
+    assert server.returncode == 0
+    assert "stopped" in out
+    assert "Traceback" not in err
+
+
+def test_a_tab_that_is_closed_while_something_is_sent_to_it_leaves_no_traceback(caplog):
+    async def send(error):
+        _expect_closed_tabs()
+        loop = asyncio.get_running_loop()
+        loop.call_exception_handler({"message": "never retrieved", "exception": error})
+
+    asyncio.run(send(WebSocketClosedError()))
+    assert not caplog.records
+    asyncio.run(send(ValueError("another fault")))
+    assert "another fault" in caplog.text
 
 
 def test_a_port_in_use_is_named():
