@@ -38,6 +38,7 @@ def drawn(tab, served):
     session = page.session
     settled(tab, session)
     until(tab, lambda: lane(tab).evaluate("c => (c.vsw.state.score?.fragments.length ?? 0) > 0"))
+    tab.get_by_role("button", name=re.compile("recordings")).wait_for()  # no control missed its first change
     return session
 
 

@@ -136,6 +136,29 @@ function buildStatus(model) {
   return line;
 }
 
+/** Whether a button stands anywhere in `node`, shadow roots included. */
+function holdsButton(node) {
+  for (const child of node.querySelectorAll("*")) {
+    if (child.tagName === "BUTTON" || (child.shadowRoot && holdsButton(child.shadowRoot))) return true;
+  }
+  return false;
+}
+
+/**
+ * Call `then` once the controls in `place` are mounted and listen: a control that is changed between its first
+ * drawing and its first listening keeps the old value. After `most` looks without one it is called anyway.
+ */
+function whenMounted(place, then, most = 150) {
+  let [seen, count] = [0, 0];
+  const look = () => {
+    count += 1;
+    if (holdsButton(place)) seen += 1;
+    if (seen > 3 || count > most) then();
+    else setTimeout(look, 20); // not at the next picture: a tab in the background draws none
+  };
+  look();
+}
+
 /** Panel entry point. */
 export function renderShell({ model, el }) {
   el.style.width = el.style.height = "100%";
@@ -199,6 +222,6 @@ export function renderShell({ model, el }) {
   };
   document.addEventListener("keydown", onKey);
   model.on("remove", () => document.removeEventListener("keydown", onKey));
-  model.send_msg({ type: "ready" });
+  whenMounted(root.querySelector(".bar"), () => model.send_msg({ type: "ready" }));
   return root;
 }
