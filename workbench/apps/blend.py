@@ -118,8 +118,8 @@ class BlendPage:
     def arrived(self) -> None:
         """Take up what was done while the page was on its way: the browser has it."""
         self._gate.open()
-        if self._make_on_arrival:
-            self._make_on_arrival = False
+        wanted, self._make_on_arrival = self._make_on_arrival, False
+        if wanted and self.session.status == "opening":  # not when Esc came first
             self.open_demo()
 
     def show(self, dashboard: str) -> None:
