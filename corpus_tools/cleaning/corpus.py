@@ -12,7 +12,7 @@ from corpus_tools.cleaning.face_model import FaceModel, face_model
 from corpus_tools.cleaning.filling import fill_gaps
 from corpus_tools.cleaning.head_motion import HeadMotion, reference_shape, remove_head_motion
 from corpus_tools.cleaning.kalman import kalman_smooth
-from corpus_tools.core import Capture, FloatArray, MotionError, frozen
+from corpus_tools.core import BoolArray, Capture, FloatArray, MotionError, frozen
 
 __all__ = ["CleanedCorpus", "clean_captures", "neutral_pose"]
 
@@ -44,7 +44,7 @@ def _model(captures: Sequence[Capture], gap_method: str, n_components: int) -> F
     """Return how the markers move together, when a gap asks for it: markers hidden while others are seen."""
     if gap_method != "pca-gp":
         return None
-    seen = (np.isfinite(c.positions_mm).all(axis=2) for c in captures)
+    seen: list[BoolArray] = [np.asarray(np.isfinite(c.positions_mm).all(axis=2)) for c in captures]
     if not any((s.any(axis=1) & ~s.all(axis=1)).any() for s in seen):
         return None
     return face_model(captures, n_components)

@@ -77,7 +77,7 @@ def together(
     Where the marker's own motion tells more, as in short gaps of smooth motion, it alone is used; where too
     few others are seen, cosines are.
     """
-    seen = np.isfinite(positions).all(axis=2)
+    seen: BoolArray = np.asarray(np.isfinite(positions).all(axis=2))
     span = _window(len(positions), gap, round(WINDOW_S * rate_hz))
     others = _others(seen, span, gap)
     if model is None or len(others) < LEAST_OTHERS:
@@ -156,7 +156,7 @@ def fill_gaps(
     """
     filler = GAP_FILLERS[method]
     positions = np.array(capture.positions_mm)
-    seen = np.isfinite(positions).all(axis=2)
+    seen: BoolArray = np.asarray(np.isfinite(positions).all(axis=2))
     sd_mm = np.zeros(seen.shape)
     if seen.all():
         return capture, sd_mm

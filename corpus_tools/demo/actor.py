@@ -79,7 +79,7 @@ def jig_mm() -> FloatArray:
     """Return the head markers on the skull, (7, 3) mm: a band above the brows."""
     rest, _, _ = _rig()
     brow = rest[[i for i, name in enumerate(marker_names()) if name.startswith("brow")]].mean(0)
-    return np.array(_JIG_MM, float) + brow
+    return np.asarray(np.array(_JIG_MM, float) + brow)
 
 
 def _pairs() -> list[tuple[int, int]]:

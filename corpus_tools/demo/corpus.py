@@ -140,7 +140,9 @@ def _events(name: str, made: SimulatedSentence) -> list[str]:
     seen, names = made.seen, marker_names()
     pair = [names[i] for i in np.flatnonzero(seen.swapped.any(axis=0))]
     if set(pair) & set(made.capture.names):
-        lines.append(f"  {name}: {' and '.join(pair)} exchanged in {_span(seen.swapped.any(axis=1))}")
+        lines.append(
+            f"  {name}: {' and '.join(pair)} exchanged in {_span(np.asarray(seen.swapped.any(axis=1)))}"
+        )
     if np.isfinite(seen.slip_s):
         lines.append(f"  {name}: the jig slips at {seen.slip_s:.2f} s")
     return lines

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from corpus_tools.core import Capture, FloatArray, MotionError, atomic_file
+from corpus_tools.core import BoolArray, Capture, FloatArray, MotionError, atomic_file
 from corpus_tools.io.c3d_layout import C3dHeader, Parameters, c3d_header, c3d_parameters, c3d_points
 from corpus_tools.io.formats import MOTION_READERS, MOTION_WRITERS
 from corpus_tools.io.motion_parts import Notes, capture_of, chosen_rate, unit_factor
@@ -155,7 +155,7 @@ def write_c3d(path: str | Path, positions_mm: FloatArray, names: Sequence[str], 
                 f"Cannot write '{path}': the marker name '{name[:40]}' cannot stand in a C3D file (at most "
                 f"{_LABEL_BYTES} bytes, not beginning with *); rename it."
             )
-    missing = np.isnan(positions).any(axis=2)
+    missing: BoolArray = np.asarray(np.isnan(positions).any(axis=2))
     points = np.ones((4, len(labels), len(positions)))
     points[:3] = np.where(missing[:, :, None], np.nan, positions).transpose(2, 1, 0)
     file = ezc3d.c3d()

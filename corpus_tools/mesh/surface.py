@@ -49,7 +49,7 @@ class ControlSurface:
     def control_mm(self, markers_mm: npt.ArrayLike) -> FloatArray:
         """Return the control points (n_patches, 10, 3), mm, for markers (n_markers, 3), mm."""
         shift = np.asarray(self.net @ (np.asarray(markers_mm, float) - self.markers_rest_mm))
-        return self.control_rest_mm + shift.reshape(-1, 10, 3)
+        return np.asarray(self.control_rest_mm + shift.reshape(-1, 10, 3))
 
 
 def with_followers(
