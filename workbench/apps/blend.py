@@ -84,7 +84,7 @@ class BlendPage:
         self.shell = Shell(
             on_key=self._key,
             on_rail=self.show,
-            on_ready=self.arrived,
+            on_ready=lambda: deliver(self.arrived),
             bar=self.bar.__panel__(),
             transport=self.transport,
             work=self.board.__panel__(),
