@@ -44,6 +44,14 @@ class Gate:
                 return
             self._deliver(action)
 
+    def asked(self, action: Callable[[], None]) -> None:
+        """Do what the user asked for: at once when the gate is open, or when it opens."""
+        with self._lock:
+            if self._kept is not None:
+                self._kept.append(action)
+                return
+        action()
+
     def open(self) -> None:
         """Let everything through from now on; opening it again changes nothing."""
         with self._lock:

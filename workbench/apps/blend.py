@@ -82,9 +82,10 @@ class BlendPage:
             on_back=lambda: self.show("blend"),
         )
         self.shell = Shell(
-            on_key=self._key,
-            on_rail=self.show,
-            on_ready=lambda: deliver(self.arrived),
+            on_key=lambda action, index: self._gate.asked(lambda: self._key(action, index)),
+            on_rail=lambda name: self._gate.asked(lambda: self.show(name)),
+            # a change before the document is known to be there would be taken for sent with it
+            on_ready=lambda: pn.state.onload(lambda: deliver(self.arrived)),
             bar=self.bar.__panel__(),
             transport=self.transport,
             work=self.board.__panel__(),

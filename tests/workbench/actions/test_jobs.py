@@ -130,3 +130,14 @@ def test_a_gate_keeps_the_order_and_lets_nothing_through_before_it_opens():
     gate(lambda: done.append(4))
     gate.open()
     assert done == [1, 2, 3, 4]
+
+
+def test_what_the_user_asks_for_waits_for_the_gate_and_is_then_done_at_once():
+    done, delivered = [], []
+    gate = Gate(delivered.append)
+    gate.asked(lambda: done.append(1))
+    gate.open()
+    assert done == []
+    delivered.pop()()
+    gate.asked(lambda: done.append(2))
+    assert (done, delivered) == ([1, 2], [])
