@@ -76,11 +76,12 @@ def _as_row(stand_in: StandIn) -> dict[str, Any]:
         "stood_in": "-".join(stand_in.used),
         "time_s": round(stand_in.time_s, 4),
         "unit": stand_in.source,
+        "differs": stand_in.differs,
     }
 
 
 def _summary(synthesis: Synthesis, opened: OpenCorpus, out: Path) -> dict[str, Any]:
-    missing = stand_ins(synthesis.selection, synthesis.utterance)
+    missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
     return {
         "out": str(out),
         "utterance": synthesis.utterance.name,
@@ -102,7 +103,7 @@ def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus) -> 
         f"{summary['utterance']}: {summary['frames']} frames from {len(fragments)} fragments "
         f"({', '.join(fragments)}) in {summary['out']}"
     )
-    missing = stand_ins(synthesis.selection, synthesis.utterance)
+    missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
     for sentence in dict.fromkeys(m.sentence for m in missing):
         say(f"▲ {sentence}")
     if summary["speech"]["silent"]:

@@ -27,7 +27,7 @@ class PhoneSet:
     silence : str
     viseme_classes, display_classes : mapping of phone -> class
         For backoff (what looks alike), and for colours.
-    bilabials, labiodentals, vowels : frozenset of str
+    bilabials, labiodentals, rounded, vowels : frozenset of str
     silence_words : frozenset of str
         Labels, in lower case, that mean silence.
     aliases : mapping of label -> phone
@@ -42,6 +42,7 @@ class PhoneSet:
     display_classes: Mapping[str, str]
     bilabials: frozenset[str]
     labiodentals: frozenset[str]
+    rounded: frozenset[str]
     vowels: frozenset[str]
     silence_words: frozenset[str]
     aliases: Mapping[str, str]
@@ -56,6 +57,18 @@ class PhoneSet:
             The phone is not in the set.
         """
         return self.viseme_classes[self.normalise(phone)]
+
+    def lip_shape(self, phone: str) -> str:
+        """Return what the lips do that everyone sees: "closed", "on teeth", "rounded", or "" for nothing.
+
+        Raises
+        ------
+        LabelError
+            The phone is not in the set.
+        """
+        known = self.normalise(phone)
+        shapes = (("closed", self.bilabials), ("on teeth", self.labiodentals), ("rounded", self.rounded))
+        return next((shape for shape, phones in shapes if known in phones), "")
 
     def display_class(self, phone: str) -> str:
         """Return the class that gives a phone its colour."""
@@ -117,6 +130,7 @@ def phone_set(name: str) -> PhoneSet:
         display_classes=_inverted(data["display_classes"]),
         bilabials=frozenset(data["bilabials"]),
         labiodentals=frozenset(data["labiodentals"]),
+        rounded=frozenset(data["rounded"]),
         vowels=frozenset(data["vowels"]),
         silence_words=frozenset(w.lower() for w in data["silence_words"]),
         aliases=MappingProxyType(dict(data.get("aliases", {}))),

@@ -22,6 +22,7 @@ from corpus_tools.synthesis.resampling import TimeRbf, fit_time_rbf, fit_uniform
 from corpus_tools.synthesis.rest import rest_at_ends
 from corpus_tools.synthesis.stand_ins import StandIn, stand_ins
 from corpus_tools.synthesis.usercurve import DEFAULT_CURVE, curve_order, curve_through, user_weighting
+from corpus_tools.synthesis.visible import how_it_differs
 from corpus_tools.synthesis.viterbi import select_viterbi
 from corpus_tools.synthesis.weighting import WEIGHTINGS, weighting
 
@@ -53,6 +54,7 @@ __all__ = [
     "fit_uniform_rbf",
     "fragment_warp",
     "greedy_as_printed",
+    "how_it_differs",
     "join_features",
     "join_gaps",
     "join_inertially",

@@ -3,8 +3,9 @@
 Paper A section 5.1.1 assumes that every diphone of the target domain was captured. Where one was not,
 phones of the same viseme class stand in (our addition): first with one phone exact, then with both by class.
 Where the corpus has no transition between the two classes at all, one phone is kept, exact or by class, and
-the other is free: backoff and join costs find the nearest. Both searches run on the same candidates, so that
-neither can win by a wider choice.
+what replaces the other does with the lips what that does, if any can: closed lips are given up last, then
+the lip on the teeth, then rounding. Among those that are left, backoff and join costs find the nearest. Both
+searches run on the same candidates, so that neither can win by a wider choice.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from corpus_tools.core import BoolArray, InputError, IntArray, NoUnitError, Unit
 from corpus_tools.fragments import diphone_keys, diphone_rows, recording_mask
 from corpus_tools.synthesis.costs import Target
 from corpus_tools.synthesis.model import SelectionModel
+from corpus_tools.synthesis.visible import SAME_CLASS, visible_losses
 
 __all__ = ["Candidates", "Pin", "find_candidates", "run_lengths"]
 
@@ -142,11 +144,12 @@ def _class_rows(
     model: SelectionModel, target: Target, k: int, usable: BoolArray, banned: IntArray
 ) -> IntArray:
     """Rows that stand in for diphone `k`, from the narrowest backoff that has any."""
-    exact = [{int(code)} - {-1} for code in target.codes[k : k + 2]]
-    alike = [set(np.flatnonzero(model.classes[:-1] == c).tolist()) for c in target.classes[k : k + 2]]
     n_codes = len(model.inventory.phone_set)
-    for pairs in _backoff_steps(exact, alike, set(range(n_codes))):
-        keys = np.array(sorted(a * n_codes + b for a, b in pairs), dtype=np.int64)
+    left, right = (
+        visible_losses(model.phones, p, model.inventory.phone_set) for p in target.labels[k : k + 2]
+    )
+    for pairs in _backoff_steps(left, right):
+        keys = np.array([a * n_codes + b for a, b in pairs], dtype=np.int64)
         found = [_keep(model, rows, usable, banned) for rows in diphone_rows(model.inventory, keys)]
         rows = np.sort(np.concatenate([np.zeros(0, dtype=np.int64), *found]))
         if len(rows):
@@ -154,14 +157,17 @@ def _class_rows(
     return np.zeros(0, dtype=np.int64)
 
 
-def _backoff_steps(
-    exact: list[set[int]], alike: list[set[int]], everything: set[int]
-) -> Iterator[set[tuple[int, int]]]:
-    """Pairs of codes, ever wider: one exact and one by class, both by class, then one of them free."""
-    yield {*product(exact[0], alike[1]), *product(alike[0], exact[1])}
-    yield {*product(alike[0], alike[1])}
-    yield {*product(exact[0], everything), *product(everything, exact[1])}
-    yield {*product(alike[0], everything), *product(everything, alike[1])}
+def _backoff_steps(left: Sequence[int], right: Sequence[int]) -> Iterator[list[tuple[int, int]]]:
+    """Pairs of codes, ever wider: by the greater loss of the two phones, then by the sum.
+
+    One phone always stays in its class: of a pair that shares neither, nothing would be left to see.
+    """
+    steps: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for (a, lost), (b, lost_too) in product(enumerate(left), enumerate(right)):
+        if min(lost, lost_too) <= SAME_CLASS:
+            steps.setdefault((max(lost, lost_too), lost + lost_too), []).append((a, b))
+    for step in sorted(steps):
+        yield steps[step]
 
 
 def _pinned_rows(

@@ -50,8 +50,9 @@ class Target:
         Weighted mismatch of a neighbour: 0 same phone, 0.5 same viseme class, 1 else. Row k + 1 belongs to
         target phone k; the rows at both ends stand for silence.
     backoff : (n_phones, n_codes + 1) float64
-        Weighted mismatch of the phone itself, by the same measure. A diphone holds half of each of its
-        phones, so that a whole phone replaced by one of its class costs the weight, any other twice that.
+        Weighted mismatch of the phone itself: 0 same phone, 0.5 same viseme class, else 0.5 to 1 by how far
+        the postures of the two classes lie apart. A diphone holds half of each of its phones, so that a whole
+        phone replaced by one of its class costs the weight, any other up to twice that, the farthest most.
     flagged, join, velocity, each : float
         Weights; `velocity` has `join` multiplied in.
     """
@@ -110,6 +111,8 @@ def prepare_target(
     same = padded_codes[:, None] == np.array([*own, beyond])
     alike = padded_classes[:, None] == model.classes
     mismatch = np.where(same, 0.0, np.where(alike, 0.5, 1.0))
+    gaps = np.where(classes[:, None] < 0, 1.0, model.class_gaps[classes][:, model.classes])
+    own_mismatch = np.where(same[1:-1], 0.0, np.where(alike[1:-1], 0.5, 0.5 + 0.5 * gaps))
     seconds = np.array([interval.duration_s for interval in utterance.phones])
     return Target(
         labels=labels,
@@ -118,7 +121,7 @@ def prepare_target(
         log_durations=np.log(np.maximum(seconds, SHORTEST_S)),
         timing=duration * ~silent,
         context=context * mismatch,
-        backoff=backoff * mismatch[1:-1],
+        backoff=backoff * own_mismatch,
         flagged=flagged,
         join=join,
         velocity=join * velocity,

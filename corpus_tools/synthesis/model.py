@@ -27,6 +27,9 @@ class PhoneClasses(Protocol):
     def viseme_class(self, phone: str) -> str:
         """Return the name of the viseme class of a phone."""
 
+    def lip_shape(self, phone: str) -> str:
+        """Return what the lips do that everyone sees: "closed", "on teeth", "rounded", or ""."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SelectionModel:
@@ -41,6 +44,8 @@ class SelectionModel:
     classes : (n_codes + 1,) int64
         Viseme class of each code; the last entry is that of silence, which stands beyond both ends.
     class_names : tuple of str
+    class_gaps : (n_classes, n_classes) float64
+        How far the mean postures of two classes lie apart, as a share of the two farthest; 0 to 1.
     log_durations : (n_phones,) float64
         log of the duration in s.
     left, right : (n_phones,) int64
@@ -55,6 +60,7 @@ class SelectionModel:
     joins: JoinFeatures
     classes: IntArray
     class_names: tuple[str, ...]
+    class_gaps: FloatArray
     log_durations: FloatArray
     left: IntArray
     right: IntArray
@@ -63,7 +69,7 @@ class SelectionModel:
     def __post_init__(self) -> None:
         for key in ("classes", "left", "right"):
             object.__setattr__(self, key, frozen(getattr(self, key), np.int64))
-        for key in ("log_durations", "flagged"):
+        for key in ("class_gaps", "log_durations", "flagged"):
             object.__setattr__(self, key, frozen(getattr(self, key)))
 
 
@@ -96,18 +102,34 @@ def prepare_selection(
     names = [phone_set.viseme_class(p) for p in (*inventory.phone_set, phone_set.silence)]
     class_names = tuple(dict.fromkeys(names))
     left, right = _neighbours(inventory)
+    joins = join_features(inventory, basis)
+    classes = np.array([class_names.index(n) for n in names])
     return SelectionModel(
         inventory=inventory,
         phones=phone_set,
         basis=basis,
-        joins=join_features(inventory, basis),
-        classes=np.array([class_names.index(n) for n in names]),
+        joins=joins,
+        classes=classes,
         class_names=class_names,
+        class_gaps=_class_gaps(joins.position, classes[inventory.codes], len(class_names)),
         log_durations=np.log(np.maximum(inventory.ends_s - inventory.starts_s, SHORTEST_S)),
         left=left,
         right=right,
         flagged=_flagged_share(inventory),
     )
+
+
+def _class_gaps(position: FloatArray, classes: IntArray, n_classes: int) -> FloatArray:
+    """Distances between the mean postures of the classes, the largest 1; 1 too where a class has no phone."""
+    count = np.bincount(classes, minlength=n_classes)
+    sums = np.stack([np.bincount(classes, column, n_classes) for column in position.T], axis=1)
+    means = sums / np.maximum(count, 1)[:, None]
+    gaps = np.asarray(np.linalg.norm(means[:, None] - means, axis=2))
+    known = np.ix_(count > 0, count > 0)
+    shares = np.ones((n_classes, n_classes))
+    shares[known] = gaps[known] / max(float(gaps[known].max()), 1e-12)
+    np.fill_diagonal(shares, 0.0)
+    return shares
 
 
 def _neighbours(inventory: UnitInventory) -> tuple[IntArray, IntArray]:

@@ -1,10 +1,12 @@
-"""Which diphones of a target the corpus does not have, and what stood in for each."""
+"""Which diphones of a target no unit has, and what stood in for each."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from corpus_tools.core import Selection, Utterance
+from corpus_tools.synthesis.model import PhoneClasses
+from corpus_tools.synthesis.visible import how_it_differs
 
 __all__ = ["StandIn", "stand_ins"]
 
@@ -21,27 +23,34 @@ class StandIn:
         The boundary between the two phones in the target, s.
     source : str
         The unit that speaks it, ``recording:first-last``.
+    differs : str
+        What is seen to differ, for people; empty where both phones stay in their viseme classes.
     """
 
     diphone: tuple[str, str]
     used: tuple[str, str]
     time_s: float
     source: str
+    differs: str = ""
 
     @property
     def sentence(self) -> str:
-        """What a reader is told: "B-UW is not in the corpus: P-UW stood in"."""
-        return f"{'-'.join(self.diphone)} is not in the corpus: {'-'.join(self.used)} stood in"
+        """What a reader is told: "No unit has B-UW: P-UW stood in", and what is seen to differ."""
+        told = f"No unit has {'-'.join(self.diphone)}: {'-'.join(self.used)} stood in"
+        return f"{told}; {self.differs}" if self.differs else told
 
 
-def stand_ins(selection: Selection, utterance: Utterance) -> tuple[StandIn, ...]:
+def stand_ins(selection: Selection, utterance: Utterance, phones: PhoneClasses) -> tuple[StandIn, ...]:
     """Return every diphone of the utterance for which another stood in, in order of time."""
-    labels, phones = utterance.labels, utterance.phones.intervals
+    labels, spoken = utterance.labels, utterance.phones.intervals
     found = []
     for chosen in selection.chosen:
         instead = {index: used for index, _, used in chosen.backoff}
         for k in range(chosen.first, chosen.last):
             used = (instead.get(k, labels[k]), instead.get(k + 1, labels[k + 1]))
-            if used != (labels[k], labels[k + 1]):
-                found.append(StandIn((labels[k], labels[k + 1]), used, phones[k].end_s, chosen.unit.key))
+            wanted = (labels[k], labels[k + 1])
+            if used != wanted:
+                seen = (how_it_differs(phones, a, b) for a, b in zip(wanted, used, strict=True))
+                differs = ", and ".join(filter(None, seen))
+                found.append(StandIn(wanted, used, spoken[k].end_s, chosen.unit.key, differs))
     return tuple(found)

@@ -140,7 +140,7 @@ def test_diphones_that_are_missing_are_told_with_what_stood_in(tool, corpus, tmp
     assert {"B-OY", "JH-OY"} <= {m["diphone"] for m in missing}
     for row in missing:
         assert row["diphone"] != row["stood_in"]
-        assert f"▲ {row['diphone']} is not in the corpus: {row['stood_in']} stood in" in out
+        assert f"▲ No unit has {row['diphone']}: {row['stood_in']} stood in" in out
         assert row["unit"] in last_json(out)["fragments"]
     assert out.count("▲") == len({(m["diphone"], m["stood_in"]) for m in missing})
 

@@ -1,13 +1,15 @@
 """Coverage of and selection from 203 recorded sentences: from labels and raw marker positions alone."""
 
+import itertools
+
 import numpy as np
 import pytest
 
-from corpus_tools.core import Capture, Recording, Tier, UnitRef, Utterance
+from corpus_tools.core import Capture, Interval, Recording, Tier, UnitRef, Utterance
 from corpus_tools.fragments import build_inventory, coverage, cut_fragment, unit_views
 from corpus_tools.io import read_labels, read_markers
 from corpus_tools.speech import phone_set, recorded_utterance
-from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
+from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi, stand_ins
 
 HELD_OUT = 40
 
@@ -97,3 +99,23 @@ def test_a_recording_that_is_kept_speaks_itself(model):
     fragment = cut_fragment(model.inventory, chosen.unit)
     assert fragment.phones == utterance.labels
     assert fragment.motion_mm.shape[1:] == (73, 3)
+
+
+def test_no_stand_in_of_the_grid_phones_leaves_its_viseme_class_for_nothing(model):
+    """Over every pair of the phones of GRID; what the lips do is kept, as units of every shape are there."""
+    known, have = model.inventory.phone_set, set()
+    for recording in model.inventory.recordings:
+        have |= set(itertools.pairwise(recording.utterance.labels))
+    seen = {pair: tuple(map(model.phones.viseme_class, pair)) for pair in itertools.product(known, repeat=2)}
+    alike = {seen[pair] for pair in have}
+    n_left = 0
+    for wanted in sorted(set(seen) - have):
+        rows = tuple(Interval(0.1 * k, 0.1 * (k + 1), p) for k, p in enumerate(wanted))
+        target = Utterance("t", "", Tier("phones", rows))
+        (used,) = [m.used for m in stand_ins(select_viterbi(model, target), target, model.phones)]
+        assert (seen[used] == seen[wanted]) == (seen[wanted] in alike), (wanted, used)
+        n_left += seen[used] != seen[wanted]
+        for k, phone in enumerate(wanted):
+            if model.phones.lip_shape(phone) and not model.phones.lip_shape(wanted[1 - k]):
+                assert model.phones.lip_shape(used[k]) == model.phones.lip_shape(phone), (wanted, used)
+    assert n_left > 100

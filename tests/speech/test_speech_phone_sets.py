@@ -24,6 +24,10 @@ def test_every_phone_of_a_set_has_both_classes(name):
     assert phones.silence not in phones.bilabials | phones.labiodentals | phones.vowels
     assert set(phones.aliases.values()) <= set(phones.phones)
     assert not set(phones.aliases) & set(phones.phones)
+    shapes = {(phones.viseme_class(p), phones.lip_shape(p)) for p in phones.phones}
+    assert len(shapes) == len(set(phones.viseme_classes.values()))  # a viseme class has one shape of lips
+    shaped = phones.bilabials | phones.labiodentals | phones.rounded
+    assert {p for p in phones.phones if phones.lip_shape(p)} == shaped
     for same in (phones.bilabials, phones.labiodentals):
         assert len({phones.viseme_class(p) for p in same}) == 1
 

@@ -26,6 +26,9 @@ class SmallPhoneSet:
         except KeyError:
             raise LabelError(f"The phone '{phone}' is not in the set.") from None
 
+    def lip_shape(self, phone: str) -> str:
+        return "closed" if self.viseme_class(phone) == "lips" else ""
+
 
 def utterance(name: str, phones, durations_s=None, words: Tier | None = None) -> Utterance:
     """Return an utterance of the given phones, one after the other from 0 s."""

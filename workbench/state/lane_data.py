@@ -12,7 +12,7 @@ import numpy as np
 from corpus_tools.core import ChosenUnit, FloatArray, Selection, Utterance
 from corpus_tools.fragments import missing_diphones
 from corpus_tools.speech import PhoneSet, lip_aperture_mm
-from corpus_tools.synthesis import DEFAULT_CURVE, weighting
+from corpus_tools.synthesis import DEFAULT_CURVE, how_it_differs, weighting
 from workbench.state.effects import Effects
 from workbench.state.picks import pin_at
 from workbench.state.stages import Result
@@ -169,13 +169,18 @@ def missing_of(result: Result) -> tuple[tuple[str, str], ...]:
 
 
 def stand_ins(result: Result) -> list[str]:
-    """Return what stood in where a diphone is missing, as "UH spoken as UW (bbaf2n, at 1.20 s)"."""
+    """Return what stood in where a diphone is missing, as "UH spoken as UW (bbaf2n, at 1.20 s)".
+
+    Where the viseme class had to differ, it says what is seen to differ.
+    """
+    known = result.request.corpus.phones
     phones = result.utterance.phones.intervals
     found = []
     for unit in result.selection.chosen:
         for index, wanted, used in unit.backoff:
             where = f"{unit.unit.recording}, at {phones[index].centre_s:.2f} s"
-            found.append(f"{wanted} spoken as {used} ({where})")
+            differs = how_it_differs(known, wanted, used)
+            found.append(f"{wanted} spoken as {used} ({where}{'; ' + differs if differs else ''})")
     return list(dict.fromkeys(found))
 
 
