@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 
 __all__ = ["DrawnPart", "drawn_part", "part_surface", "smooth_normals"]
 
-REFINED = {"eyes": 2, "upper_teeth": 3, "lower_teeth": 3}
-"""Halvings of every edge (our choice): round irises and single teeth need more vertices than shapes do."""
-IRIS_LEVELS = 1
-"""Further halvings around the irises."""
+REFINED = {"eyes": (1, 3), "upper_teeth": (0, 3), "lower_teeth": (0, 3)}
+"""Halvings of every edge, and of those where the paint is fine: around the irises, in front of the teeth.
+
+Our choice: round irises and single teeth need more vertices than shapes do, and what nobody sees costs time."""
+TEETH_BACK_MM = 30.0
+"""Teeth further behind the front ones than this are not seen between the lips."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,10 +80,11 @@ def drawn_part(mesh: Mesh, part: str) -> DrawnPart:
     faces = renumber[faces]
     weights = csr_array((np.ones(len(used)), (np.arange(len(used)), used)), (len(used), mesh.n_vertices))
     points, vertex = mesh.vertices_mm[used], used
-    for level in range(REFINED.get(part, 0) + (IRIS_LEVELS if part == "eyes" else 0)):
+    everywhere, most = REFINED.get(part, (0, 0))
+    for level in range(most):
         kept = faces[:0]
-        if level >= REFINED[part]:  # only around the irises: the gaps to coarser faces are below 0.02 mm
-            near = _near_iris(points, faces)
+        if level >= everywhere:  # gaps to the coarser faces around are below 0.02 mm
+            near = (_near_iris if part == "eyes" else _in_front)(points, faces)
             kept, faces = faces[~near], faces[near]
         faces, ends = _halved(faces, len(points))
         faces = np.concatenate([kept, faces])
@@ -122,6 +125,18 @@ def _near_iris(points: FloatArray, faces: IntArray) -> BoolArray:
             away = np.hypot(*(ball - centre)[:, :2].T)
             found[of_side] = (ball[:, 2] > centre[2]) & (away < (LIMBUS + 0.05) * radius)
     return np.asarray(found[faces].any(axis=1))
+
+
+def _in_front(points: FloatArray, faces: IntArray) -> BoolArray:
+    """Return the faces of teeth that look forward or aside and are near the front, (n_faces,)."""
+    corners = points[faces]
+    middles = corners.mean(axis=1)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    out = middles - points.mean(axis=0)
+    looks_out = normals[:, 0] * out[:, 0] + normals[:, 2] * out[:, 2]
+    foremost = middles[:, 2] >= np.percentile(middles[:, 2], 90)
+    looks_out *= np.sign(looks_out[foremost].sum())  # whichever way round the corners go
+    return np.asarray((looks_out > 0) & (middles[:, 2] > points[:, 2].max() - TEETH_BACK_MM))
 
 
 def _rounded(middles: FloatArray, points: FloatArray, ends: IntArray) -> FloatArray:

@@ -7,13 +7,10 @@ from browser.shown import FIND, GROUND, SIZE, Shown
 from workbench.views.mesh_view import MeshView
 from workbench.views.scene_actors import surface_actor
 
-MIXED = f"""(draw) => {{
+DRAWN = f"""(draw) => {{
   const v = {FIND}.vsw;
   draw(v);
-  const p = v.scene.pixels();
-  let mixed = 0;
-  for (let i = 0; i < p.length; i += 4) mixed += p[i] > 20 && p[i] < 235;
-  return mixed;
+  return [...v.scene.pixels()].filter((_, i) => i % 4 === 0);
 }}"""
 
 
@@ -27,9 +24,14 @@ def square():
 def test_a_picture_at_rest_has_smooth_edges_and_a_moving_one_is_quick(serve, browser_page):
     shown = Shown(serve, browser_page, square)
     assert shown.get("v.scene.slow")  # the browser of these tests draws with the processor
-    mixed = {how: shown.tab.evaluate(f"() => ({MIXED})((v) => v.draw({how}))") for how in ("true", "false")}
-    assert mixed["true"] > 200
-    assert mixed["false"] == 0
+    smooth, quick = (
+        np.reshape(shown.tab.evaluate(f"() => ({DRAWN})((v) => v.draw({how}))"), (380, 420)) / 255
+        for how in ("true", "false")
+    )
+    assert np.mean((smooth > 0.1) & (smooth < 0.9)) > 200 / smooth.size
+    assert shown.get("[v.scene.quick.width, v.scene.quick.height]") == [210, 190]
+    assert 0 < np.abs(quick - smooth).mean() < 0.005  # only edges are coarser
+    assert abs(quick.mean() - smooth.mean()) < 0.001
 
     shown.get("v.draw(false)")
     draws = shown.get("v.draws")

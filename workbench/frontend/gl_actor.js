@@ -1,5 +1,6 @@
 /** One actor of the mesh view: a surface, points or lines, with its positions in a float texture. */
 import { BasisDeformer, Net, PatchDeformer } from "./gl_deform.js";
+import { Normals } from "./gl_normals.js";
 import { texture } from "./gl_program.js";
 import { floats, integers, octets, transform } from "./linalg.js";
 
@@ -16,39 +17,6 @@ function padded(rows, width, height) {
     out[j + 1] = rows[i + 1];
     out[j + 2] = rows[i + 2];
   }
-  return out;
-}
-
-/**
- * The two other corners of every triangle at a vertex, vertex after vertex.
- * @param {Uint32Array} faces three vertices each
- * @param {number} n vertices
- * @returns {{start: Uint32Array, pairs: Uint32Array}} first pair and number of pairs of each vertex; pairs
- */
-export function oneRing(faces, n) {
-  const start = new Uint32Array(2 * n);
-  for (const v of faces) start[2 * v + 1] += 1;
-  for (let v = 0, sum = 0; v < n; v += 1) {
-    start[2 * v] = sum;
-    sum += start[2 * v + 1];
-  }
-  const pairs = new Uint32Array(2 * faces.length);
-  const filled = new Uint32Array(n);
-  for (let i = 0; i < faces.length; i += 3) {
-    for (let corner = 0; corner < 3; corner += 1) {
-      const v = faces[i + corner];
-      const k = 2 * (start[2 * v] + filled[v]);
-      filled[v] += 1;
-      pairs[k] = faces[i + ((corner + 1) % 3)];
-      pairs[k + 1] = faces[i + ((corner + 2) % 3)];
-    }
-  }
-  return { start, pairs };
-}
-
-function grown(values, size) {
-  const out = new values.constructor(size);
-  out.set(values);
   return out;
 }
 
@@ -84,6 +52,7 @@ export class Actor {
     gl.bindVertexArray(null);
     this.setScalars(spec.scalars);
     this.deformer = this.makeDeformer(scene, spec);
+    this.normals = this.kind === SURFACE ? new Normals(gl, scene.programs, this) : null;
   }
 
   keep(made) {
@@ -144,20 +113,8 @@ export class Actor {
     const { gl } = this;
     this.corners = cells.length;
     this.cells = cells;
-    if (this.kind === SURFACE) this.uploadRing(cells);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, cells, gl.STATIC_DRAW);
-  }
-
-  uploadRing(faces) {
-    const { gl } = this;
-    const { start, pairs } = oneRing(faces, this.n);
-    this.ringWidth = Math.max(1, Math.min(2048, faces.length));
-    const rows = Math.max(1, Math.ceil(faces.length / this.ringWidth));
-    const ring = grown(pairs, 2 * this.ringWidth * rows);
-    this.ring = this.keep(texture(gl, gl.RG32UI, this.ringWidth, rows, ring));
-    const starts = grown(start, 2 * this.width * this.height);
-    this.ringStart = this.keep(texture(gl, gl.RG32UI, this.width, this.height, starts));
   }
 
   /** Replace all positions: (n, 3) floats. */
@@ -169,7 +126,7 @@ export class Actor {
     this.staged = padded(points, this.width, this.height);
     gl.bindTexture(gl.TEXTURE_2D, this.rest);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, this.width, this.height, gl.RGBA, gl.FLOAT, this.staged);
-    this.current = this.rest;
+    this.setCurrent(this.rest, true);
   }
 
   /**
@@ -180,7 +137,13 @@ export class Actor {
   move(displacement, stamp) {
     if (this.deformer?.k * 3 !== displacement.length) return;
     this.deformer.move(displacement, stamp);
-    this.current = this.deformer.moved;
+    this.setCurrent(this.deformer.moved, true);
+  }
+
+  /** Which positions are drawn; `changed` when the numbers in them are others than before. */
+  setCurrent(positions, changed = false) {
+    if (this.normals && (changed || this.current !== positions)) this.normals.fresh = false;
+    this.current = positions;
   }
 
   /** From the actor to the scene: its own place, then its motion; 16 numbers or null. */
@@ -191,7 +154,7 @@ export class Actor {
 
   /** Back to where the actor stands when nothing moves it. */
   reset() {
-    this.current = this.rest;
+    this.setCurrent(this.rest);
     this.rigid = null;
   }
 
@@ -210,6 +173,7 @@ export class Actor {
     gl.deleteTexture(this.table);
     gl.deleteVertexArray(this.array);
     this.deformer?.dispose();
+    this.normals?.dispose();
   }
 }
 

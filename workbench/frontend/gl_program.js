@@ -1,8 +1,10 @@
 /** WebGL2 programs, textures and targets of the mesh view. */
 import {
   BASIS_FRAGMENT,
+  DOTS_FRAGMENT,
   DRAW_FRAGMENT,
   DRAW_VERTEX,
+  NORMAL_FRAGMENT,
   PASS_VERTEX,
   PATCH_FRAGMENT,
   PICK_FRAGMENT,
@@ -13,7 +15,9 @@ import {
 const TEXTS = {
   basis: [PASS_VERTEX, BASIS_FRAGMENT],
   patch: [PASS_VERTEX, PATCH_FRAGMENT],
+  normals: [PASS_VERTEX, NORMAL_FRAGMENT],
   draw: [DRAW_VERTEX, DRAW_FRAGMENT],
+  dots: [DRAW_VERTEX, DOTS_FRAGMENT],
   pick: [PICK_VERTEX, PICK_FRAGMENT],
 };
 

@@ -2,7 +2,7 @@
 import { Actor, LINES, POINTS, SURFACE } from "./gl_actor.js";
 import { Programs, useTexture } from "./gl_program.js";
 import { MAX_LIGHTS } from "./gl_shaders.js";
-import { SmoothEdges, drawnInSoftware } from "./gl_smooth.js";
+import { CoarsePicture, PlainPicture, SmoothEdges, drawnInSoftware } from "./gl_smooth.js";
 import { length, multiply, parallel, perspective, subtract, unit, viewMatrix } from "./linalg.js";
 
 const NEAR = 0.02;
@@ -20,9 +20,10 @@ export class Scene {
     }
     this.gl = gl;
     this.programs = new Programs(gl);
-    this.smooth = new SmoothEdges(gl);
-    /** Smooth edges cost too much while something moves. */
+    /** The processor draws: pixels cost much while something moves. */
     this.slow = drawnInSoftware(gl);
+    this.smooth = new SmoothEdges(gl);
+    this.quick = this.slow ? new CoarsePicture(gl) : new PlainPicture(gl);
     /** @type {Map<string, Actor>} */
     this.actors = new Map();
   }
@@ -86,24 +87,23 @@ export class Scene {
    * @param {object} camera position, focal_point, view_up, view_angle (degrees), parallel_scale (0: perspective)
    * @param {{direction: number[], colour: number[], eye: boolean}[]} lights
    * @param {number[]} ground red, green, blue
-   * @param {boolean} smooth with smooth edges
+   * @param {boolean} smooth with smooth edges; without, coarsely where the processor draws
    */
   draw(camera, lights, ground, smooth = true) {
     const { gl } = this;
-    const { program } = this.programs.get("draw");
     const { view, projection } = this.matrices(camera);
-    if (smooth) this.smooth.begin();
-    else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    const shown = this.shown();
+    for (const { normals } of shown) normals?.refresh();
+    const picture = smooth ? this.smooth : this.quick;
+    const fine = picture.begin();
+    gl.viewport(0, 0, Math.round(fine * gl.drawingBufferWidth), Math.round(fine * gl.drawingBufferHeight));
     gl.clearColor(ground[0], ground[1], ground[2], 1);
     gl.colorMask(true, true, true, true);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.disable(gl.BLEND);
-    gl.useProgram(program);
-    this.setLights(lights, view);
-    const shown = this.shown();
+    this.lit = { lights, view, fine, programs: new Set() };
     for (const actor of shown) if (actor.opacity >= 1) this.drawActor(actor, view, projection);
     for (const actor of shown) {
       if (actor.opacity >= 1) continue;
@@ -116,12 +116,21 @@ export class Scene {
       gl.disable(gl.BLEND);
     }
     gl.bindVertexArray(null);
-    if (smooth) this.smooth.end();
+    picture.end();
   }
 
-  setLights(lights, view) {
+  /** Take up the program of a kind of actor; with its lights, once a picture. */
+  use(kind) {
+    const { gl, lit } = this;
+    const found = this.programs.get(kind === POINTS ? "dots" : "draw");
+    gl.useProgram(found.program);
+    if (!lit.programs.has(found)) this.setLights(found.at, lit.lights, lit.view);
+    lit.programs.add(found);
+    return found.at;
+  }
+
+  setLights(at, lights, view) {
     const { gl } = this;
-    const { at } = this.programs.get("draw");
     const from = new Float32Array(3 * MAX_LIGHTS);
     const colour = new Float32Array(3 * MAX_LIGHTS);
     lights.slice(0, MAX_LIGHTS).forEach((light, i) => {
@@ -139,7 +148,7 @@ export class Scene {
 
   drawActor(actor, view, projection) {
     const { gl } = this;
-    const { at } = this.programs.get("draw");
+    const at = this.use(actor.kind);
     const { spec } = actor;
     const place = actor.place(multiply);
     const toEye = place ? multiply(view, place) : view;
@@ -152,11 +161,9 @@ export class Scene {
     gl.uniformMatrix4fv(at.toClip, false, multiply(projection, toEye));
     gl.uniform1i(at.kind, actor.kind);
     gl.uniform1i(at.width, actor.width);
-    gl.uniform1f(at.pointSize, spec.size * (globalThis.devicePixelRatio || 1));
+    gl.uniform1f(at.pointSize, this.lit.fine * spec.size * (globalThis.devicePixelRatio || 1));
     useTexture(gl, 0, gl.TEXTURE_2D, actor.current, at.positions);
-    useTexture(gl, 3, gl.TEXTURE_2D, actor.ring ?? null, at.ring);
-    useTexture(gl, 4, gl.TEXTURE_2D, actor.ringStart ?? null, at.ringStart);
-    gl.uniform1i(at.ringWidth, actor.ringWidth ?? 1);
+    useTexture(gl, 3, gl.TEXTURE_2D, actor.normals?.texture ?? null, at.normals);
     useTexture(gl, 5, gl.TEXTURE_2D, actor.table, at.table);
     gl.uniform1i(at.colours, actor.table ? actor.scalars.table.byteLength / 4 - 3 : 0);
     if (actor.table) gl.uniform2f(at.range, ...actor.scalars.range);
@@ -195,6 +202,7 @@ export class Scene {
   dispose() {
     this.clear();
     this.smooth.dispose();
+    this.quick.dispose();
     this.programs.dispose();
     this.gl.getExtension("WEBGL_lose_context")?.loseContext();
   }

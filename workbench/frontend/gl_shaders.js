@@ -1,4 +1,4 @@
-/** The texts of the WebGL2 programs of the mesh view: two deform vertices, one draws them, one picks. */
+/** The texts of the WebGL2 programs of the mesh view: deform vertices, find their normals, draw, pick. */
 
 export const MAX_LIGHTS = 8;
 
@@ -80,15 +80,36 @@ void main() {
   position.xyz = mix(still, origin + moved, on.w);
 }`;
 
-/** Positions from a texture; the normal is the sum of the cross products of the triangles around a vertex. */
-export const DRAW_VERTEX = `#version 300 es
+/** The normal at every vertex: the sum of the cross products of the triangles around it. */
+export const NORMAL_FRAGMENT = `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp usampler2D;
 uniform sampler2D positions;
 uniform usampler2D ring, ringStart;
-uniform int width, ringWidth, kind;
+uniform int width, ringWidth;
+out vec4 normal;
+vec3 at(int i) { return texelFetch(positions, ivec2(i % width, i / width), 0).xyz; }
+void main() {
+  ivec2 vertex = ivec2(gl_FragCoord.xy);
+  vec3 p = texelFetch(positions, vertex, 0).xyz;
+  vec3 sum = vec3(0.0);
+  uvec2 span = texelFetch(ringStart, vertex, 0).xy;
+  for (uint k = span.x; k < span.x + span.y; k++) {
+    uvec2 pair = texelFetch(ring, ivec2(int(k) % ringWidth, int(k) / ringWidth), 0).xy;
+    sum += cross(at(int(pair.x)) - p, at(int(pair.y)) - p);
+  }
+  normal = vec4(sum, 0.0);
+}`;
+
+/** Positions and normals from textures. */
+export const DRAW_VERTEX = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+uniform sampler2D positions, normals;
+uniform int width, kind;
 uniform float pointSize;
 uniform mat4 toEye, toClip;
 layout(location = 0) in vec4 colour;
@@ -96,18 +117,10 @@ layout(location = 1) in float scalar;
 out vec3 normal, eye;
 out vec4 shade;
 out float value;
-vec3 at(int i) { return texelFetch(positions, ivec2(i % width, i / width), 0).xyz; }
 void main() {
-  vec3 p = at(gl_VertexID);
-  vec3 sum = vec3(0.0);
-  if (kind == 0) {
-    uvec2 span = texelFetch(ringStart, ivec2(gl_VertexID % width, gl_VertexID / width), 0).xy;
-    for (uint k = span.x; k < span.x + span.y; k++) {
-      uvec2 pair = texelFetch(ring, ivec2(int(k) % ringWidth, int(k) / ringWidth), 0).xy;
-      sum += cross(at(int(pair.x)) - p, at(int(pair.y)) - p);
-    }
-  }
-  normal = mat3(toEye) * sum;
+  ivec2 texel = ivec2(gl_VertexID % width, gl_VertexID / width);
+  vec3 p = texelFetch(positions, texel, 0).xyz;
+  normal = kind == 0 ? mat3(toEye) * texelFetch(normals, texel, 0).xyz : vec3(0.0);
   eye = (toEye * vec4(p, 1.0)).xyz;
   shade = colour;
   value = scalar;
@@ -116,11 +129,18 @@ void main() {
   gl_PointSize = pointSize;
 }`;
 
+/** A point is drawn as a ball. */
+const ROUND = `vec2 q = 2.0 * gl_PointCoord - 1.0;
+  float r = dot(q, q);
+  if (r > 1.0) discard;
+  n = vec3(q.x, -q.y, sqrt(1.0 - r));`;
+
 /**
  * Ambient, diffuse and Phong specular terms, lit from both sides, as VTK has them; lines are not lit. Scalars
  * are mapped pixel by pixel; `table` holds the colour below, those of the range, the one above, and of NaN.
+ * Only round points leave pixels out: a program that may do so for surfaces shades what is hidden, too.
  */
-export const DRAW_FRAGMENT = `#version 300 es
+const shading = (round) => `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -150,13 +170,7 @@ void main() {
   }
   vec3 toEye = normalize(-eye);
   vec3 n = normalize(normal);
-  if (kind == 1) {
-    vec2 q = 2.0 * gl_PointCoord - 1.0;
-    float r = dot(q, q);
-    if (r > 1.0) discard;
-    n = vec3(q.x, -q.y, sqrt(1.0 - r));
-  }
-  else if (!gl_FrontFacing) n = -n;
+  ${round ? ROUND : "if (!gl_FrontFacing) n = -n;"}
   vec3 diffuse = vec3(0.0), gloss = vec3(0.0);
   for (int i = 0; i < lights; i++) {
     float facing = max(dot(n, lightFrom[i]), 0.0);
@@ -168,6 +182,9 @@ void main() {
   }
   pixel = vec4(base.rgb * (material.x + material.y * diffuse) + material.z * gloss, base.a);
 }`;
+
+export const DRAW_FRAGMENT = shading(false);
+export const DOTS_FRAGMENT = shading(true);
 
 /** Which vertex of a triangle, point or line is drawn here, and where in the scene. */
 export const PICK_VERTEX = `#version 300 es

@@ -1,5 +1,6 @@
 /** What is under the pointer: a few pixels around it drawn once more, each saying which vertex it shows. */
-import { SURFACE, oneRing } from "./gl_actor.js";
+import { SURFACE } from "./gl_actor.js";
+import { oneRing } from "./gl_normals.js";
 import { target, texture, useTexture } from "./gl_program.js";
 import { multiply, transform } from "./linalg.js";
 
