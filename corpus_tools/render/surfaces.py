@@ -21,7 +21,7 @@ __all__ = ["DrawnPart", "drawn_part", "part_surface", "smooth_normals"]
 REFINED = {"eyes": (1, 3), "upper_teeth": (0, 3), "lower_teeth": (0, 3)}
 """Halvings of every edge, and of those where the paint is fine: around the irises, in front of the teeth.
 
-Our choice: round irises and single teeth need more vertices than shapes do, and what nobody sees costs time."""
+Our choice: round irises and single teeth need more vertices than shapes do; what nobody sees costs time."""
 TEETH_BACK_MM = 30.0
 """Teeth further behind the front ones than this are not seen between the lips."""
 
