@@ -69,6 +69,7 @@ def clean_captures(
     gap_doubt_mm: float = 1.0,
     gap_components: int = 24,
     names: Sequence[str] = (),
+    learn_from: Sequence[int] | None = None,
     progress: Callable[[float, str], None] | None = None,
 ) -> CleanedCorpus:
     """Remove head motion, fill gaps and smooth all recordings of one speaker (paper A section 4).
@@ -94,6 +95,9 @@ def clean_captures(
         Of the model of the face that fills gaps.
     names : sequence of str, optional
         Of the recordings, for messages.
+    learn_from : sequence of int, optional
+        Captures that may say what the head looks like and how the face moves; all when None. With held-out
+        captures left out here, the cleaning of the others does not depend on them.
     progress : callable, optional
         ``progress(fraction, what)``; may raise to cancel.
 
@@ -104,7 +108,8 @@ def clean_captures(
     """
     report = progress or (lambda fraction, what: None)
     report(0.0, "finding the head")
-    reference = reference_shape(captures, columns, allow_scale, head_cutoff_mm)
+    known = range(len(captures)) if learn_from is None else learn_from
+    reference = reference_shape([captures[i] for i in known], columns, allow_scale, head_cutoff_mm)
     stable, motions = [], []
     for index, capture in enumerate(captures):
         report(0.2 + 0.5 * index / len(captures), "removing head motion")
@@ -118,7 +123,7 @@ def clean_captures(
         stable.append(still)
         motions.append(motion)
     report(0.7, "filling gaps")
-    model = _model(stable, gap_method, gap_components)
+    model = _model([stable[i] for i in known], gap_method, gap_components)
     cleaned, bands = [], []
     for index, still in enumerate(stable):
         report(0.7 + 0.3 * index / len(captures), "cleaning")

@@ -10,19 +10,22 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from types import FrameType
 from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from corpus_tools.core import InputError, WorkbenchError
+from corpus_tools.core import InputError, OutputError, WorkbenchError, check_writable
+from corpus_tools.io import find_recordings, read_description
 
 __all__ = [
     "EXIT_BUG",
     "EXIT_INPUT",
     "OneSentence",
     "StoppedByUser",
+    "check_out_folder",
     "emit_json",
     "guarded",
     "progress_bar",
@@ -68,6 +71,17 @@ def progress_bar(title: str) -> Iterator[Callable[[float, str], None]]:
     with bar:
         task = bar.add_task(title, total=1.0)
         yield lambda fraction, what: bar.update(task, completed=fraction, description=what)
+
+
+def check_out_folder(out: Path, corpus: Path) -> None:
+    """Refuse a folder that holds recordings: what is written must neither replace nor become one."""
+    check_writable(out)
+    description = read_description(corpus)
+    folders = {description.folder.resolve()}
+    for files in find_recordings(description):
+        folders |= {p.parent.resolve() for p in (files.motion, files.audio, files.labels) if p}
+    if out.resolve() in folders:
+        raise OutputError(f"'{out}' belongs to the corpus '{corpus}'; choose a folder of its own for --out.")
 
 
 class OneSentence:

@@ -8,13 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
-from corpus_tools.cli.common import emit_json, progress_bar, say
+from corpus_tools.cli.common import check_out_folder, emit_json, progress_bar, say
 from corpus_tools.cli.targets import SpeakRequest
 from corpus_tools.config import Config, ConfigBase, config_with, load_config
-from corpus_tools.core import NoUnitError, OutputError, SynthesisError, Utterance, check_writable
-from corpus_tools.io import find_recordings, read_description
+from corpus_tools.core import NoUnitError, SynthesisError, Utterance
 from corpus_tools.mesh import mesh_by_name_or_file
-from corpus_tools.methods import METHODS
+from corpus_tools.methods import SEARCHES
 from corpus_tools.pipeline import (
     Head,
     OpenCorpus,
@@ -36,19 +35,8 @@ def _config(path: Path | None, changes: dict[str, Any]) -> ConfigBase:
     """Return the config of the command line: that of the file, with the options that were given."""
     config = load_config(path) if path else Config()
     config = config_with(config, **{k: v for k, v in changes.items() if v is not None})
-    METHODS[config.selection.method]
+    SEARCHES[config.selection.method]
     return config
-
-
-def _check_out(out: Path, corpus: Path) -> None:
-    """Refuse a folder that holds recordings: what is written must neither replace nor become one."""
-    check_writable(out)
-    description = read_description(corpus)
-    folders = {description.folder.resolve()}
-    for files in find_recordings(description):
-        folders |= {p.parent.resolve() for p in (files.motion, files.audio, files.labels) if p}
-    if out.resolve() in folders:
-        raise OutputError(f"'{out}' belongs to the corpus '{corpus}'; choose a folder of its own for --out.")
 
 
 def _left_out(opened: OpenCorpus) -> str:
@@ -177,7 +165,7 @@ def synth(
     )
     asked.check(settings)
     exports = export_names(export)
-    _check_out(out, corpus)
+    check_out_folder(out, corpus)
     check_exports(exports, out)
     head_mesh = mesh_by_name_or_file(settings.deform.mesh)
     with progress_bar("opening the corpus") as progress:

@@ -1,5 +1,31 @@
 """Every way from timed phones to marker motion, by id."""
 
-from corpus_tools.methods.registry import METHODS, FragmentMethod
+from corpus_tools.methods import dominance, fragments, mean, viseme_linear
+from corpus_tools.methods.registry import (
+    METHODS,
+    SEARCHES,
+    FragmentMethod,
+    Method,
+    Predictor,
+    Variant,
+    parse_variant,
+)
+from corpus_tools.methods.training import SPEECH_MARGIN_S, TrainingSet, phone_anchors_s, speech_span_s
 
-__all__ = ["METHODS", "FragmentMethod"]
+__all__ = [
+    "METHODS",
+    "SEARCHES",
+    "SPEECH_MARGIN_S",
+    "FragmentMethod",
+    "Method",
+    "Predictor",
+    "TrainingSet",
+    "Variant",
+    "dominance",
+    "fragments",
+    "mean",
+    "parse_variant",
+    "phone_anchors_s",
+    "speech_span_s",
+    "viseme_linear",
+]

@@ -1,23 +1,59 @@
 """Ways from timed phones to marker motion, under one interface.
 
-A method is found by its id. Those made of fragments choose units first; their motion is then rendered by
-:mod:`corpus_tools.synthesis`, so that a change of g(u) needs no new search.
+A method is found by its id. It is fitted on recordings (:class:`~corpus_tools.methods.training.TrainingSet`)
+and then predicts the motion of any utterance of the same phone set. Those made of fragments also choose units
+on their own (:data:`SEARCHES`), so that a change of g(u) needs no new search.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
-from corpus_tools.core import Registry, Selection
+from corpus_tools.core import InputError, Registry, Selection, Trajectory, Utterance
+from corpus_tools.core.errors import suggestion
+from corpus_tools.methods.training import TrainingSet
 from corpus_tools.synthesis import select_greedy, select_viterbi
 
-__all__ = ["METHODS", "FragmentMethod"]
+__all__ = ["METHODS", "SEARCHES", "FragmentMethod", "Method", "Predictor", "Variant", "parse_variant"]
+
+Predictor = Callable[[Utterance], Trajectory]
+"""What fitting gives: the motion of an utterance at a uniform rate from 0 s to its end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A way from timed phones to marker motion.
+
+    Attributes
+    ----------
+    name : str
+        Method id, as on the command line.
+    summary : str
+        One sentence for lists and tooltips.
+    fit : callable
+        ``fit(training, **settings) -> Predictor``; every setting has a default.
+    """
+
+    name: str
+    summary: str
+    fit: Callable[..., Predictor]
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The settings and their defaults."""
+        parameters = list(inspect.signature(self.fit).parameters.values())[1:]
+        return {p.name: p.default for p in parameters}
+
+
+METHODS: Registry[Method] = Registry("method")
 
 
 @dataclass(frozen=True, slots=True)
 class FragmentMethod:
-    """A method of paper A: choose motion fragments, then align, resample and blend them.
+    """A search of paper A: choose motion fragments, which are then aligned, resampled and blended.
 
     Attributes
     ----------
@@ -34,15 +70,69 @@ class FragmentMethod:
     search: Callable[..., Selection]
 
 
-METHODS: Registry[FragmentMethod] = Registry("method")
+SEARCHES: Registry[FragmentMethod] = Registry("method of fragments")
 
-METHODS.add(
+SEARCHES.add(
     "greedy",
     FragmentMethod(
         "greedy", "Longest fragment first, as paper A prints it (its endless loop mended).", select_greedy
     ),
 )
-METHODS.add(
+SEARCHES.add(
     "viterbi",
     FragmentMethod("viterbi", "The cheapest path over timing, context and join costs.", select_viterbi),
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A method with some of its settings changed.
+
+    Attributes
+    ----------
+    label : str
+        As the user wrote it: ``viterbi:mode=inertial+remove_bias=off``.
+    method : Method
+    changes : mapping of str to value
+    """
+
+    label: str
+    method: Method
+    changes: Mapping[str, Any] = field(default_factory=dict)
+
+    def fit(self, training: TrainingSet) -> Predictor:
+        """Fit the method on recordings, under these settings."""
+        return self.method.fit(training, **self.changes)
+
+
+def parse_variant(text: str) -> Variant:
+    """Return the method that ``ID`` or ``ID:key=value+key=value`` names.
+
+    Raises
+    ------
+    InputError
+        There is no such method or setting, or its value is of another kind.
+    """
+    name, _, settings = text.strip().partition(":")
+    method = METHODS[name]
+    changes: dict[str, Any] = {}
+    for pair in settings.split("+") if settings else ():
+        key, sign, value = pair.partition("=")
+        if key not in method.settings:
+            hint = suggestion(key, method.settings) or f"; known: {', '.join(method.settings) or 'none'}."
+            raise InputError(f"'{text}': the method '{name}' has no setting '{key}'{hint}")
+        if not sign:
+            raise InputError(f"'{text}': '{pair}' is not of the form KEY=VALUE, as in remove_bias=off.")
+        changes[key] = _value(text, key, value, method.settings[key])
+    return Variant(text.strip(), method, changes)
+
+
+def _value(text: str, key: str, value: str, default: Any) -> Any:
+    """Return a value of the kind of the default: on or off, a number, a word."""
+    try:
+        if isinstance(default, bool):
+            return {"on": True, "true": True, "off": False, "false": False}[value.lower()]
+        return type(default)(value)
+    except (KeyError, ValueError):
+        kind = {bool: "on or off", int: "a whole number", float: "a number"}[type(default)]
+        raise InputError(f"'{text}': {key} is '{value}'; {kind} was expected.") from None

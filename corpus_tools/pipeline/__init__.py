@@ -1,12 +1,18 @@
 """Stages over an opened corpus, and the folder that a synthesis writes."""
 
-from corpus_tools.pipeline.closing import LipModel
 from corpus_tools.pipeline.head import Animation, Head, animate, prepare_head, vertex_frames
 from corpus_tools.pipeline.health import check_corpus, health_lines
-from corpus_tools.pipeline.opened import OpenCorpus, Progress, open_corpus
+from corpus_tools.pipeline.opened import OpenCorpus, open_corpus
 from corpus_tools.pipeline.outputs import write_motion, write_synthesis
 from corpus_tools.pipeline.overrides import ban_of, overrides_of, parse_pin, pin_text
 from corpus_tools.pipeline.provenance import code_hash, corpus_provenance, library_versions
+from corpus_tools.pipeline.reading import (
+    Progress,
+    RawCorpus,
+    cleaned_recordings,
+    joined_corpora,
+    read_corpus,
+)
 from corpus_tools.pipeline.speaking import (
     check_speech,
     corpus_vocabulary,
@@ -15,6 +21,8 @@ from corpus_tools.pipeline.speaking import (
     speech_language,
 )
 from corpus_tools.pipeline.stages import Synthesis, align_units, blend_units, select_units, synthesise
+from corpus_tools.pipeline.threads import one_thread
+from corpus_tools.synthesis.lips import LipModel
 
 __all__ = [
     "Animation",
@@ -22,6 +30,7 @@ __all__ = [
     "LipModel",
     "OpenCorpus",
     "Progress",
+    "RawCorpus",
     "Synthesis",
     "align_units",
     "animate",
@@ -29,16 +38,20 @@ __all__ = [
     "blend_units",
     "check_corpus",
     "check_speech",
+    "cleaned_recordings",
     "code_hash",
     "corpus_provenance",
     "corpus_vocabulary",
     "health_lines",
+    "joined_corpora",
     "library_versions",
+    "one_thread",
     "open_corpus",
     "overrides_of",
     "parse_pin",
     "pin_text",
     "prepare_head",
+    "read_corpus",
     "select_units",
     "speak_for",
     "speech_facts",

@@ -11,6 +11,7 @@ import numpy as np
 
 from corpus_tools.cleaning import CleanedCorpus, clean_captures, gaps, remove_head_motion
 from corpus_tools.core import Capture, CorpusError, Labels, Utterance, WorkbenchError
+from corpus_tools.fragments.posture import bias_rms_mm, posture_offsets_mm
 from corpus_tools.io import (
     CorpusDescription,
     RecordingFiles,
@@ -21,8 +22,7 @@ from corpus_tools.io import (
     reading_notes,
 )
 from corpus_tools.pipeline.lacking import axes_advice, what_is_lacking, what_is_left_out
-from corpus_tools.pipeline.opened import Progress, reference_columns, silent
-from corpus_tools.pipeline.posture import bias_rms_mm, posture_offsets_mm
+from corpus_tools.pipeline.reading import Progress, reference_columns, silent
 from corpus_tools.pipeline.usable import in_order_of, motion_problem, seen_markers, usual_markers
 from corpus_tools.speech import PhoneSet, closure_offset, phone_set, recorded_utterance
 

@@ -2,62 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 
 import numpy as np
 
-from corpus_tools.cleaning import clean_captures, neutral_pose
+from corpus_tools.cleaning import neutral_pose
 from corpus_tools.config import Config, ConfigBase
 from corpus_tools.core import (
     BoolArray,
     Capture,
-    CorpusError,
     FloatArray,
     FrameFlag,
     InputError,
     Recording,
     UnitInventory,
     Utterance,
-    WorkbenchError,
 )
 from corpus_tools.core.errors import suggestion
 from corpus_tools.fragments import build_inventory
-from corpus_tools.io import (
-    CorpusDescription,
-    RecordingFiles,
-    find_recordings,
-    load_capture,
-    load_labels,
-    read_description,
-)
-from corpus_tools.pipeline.closing import LipModel, lip_model
-from corpus_tools.pipeline.posture import as_recorded, bias_rms_mm, without_bias
+from corpus_tools.fragments.posture import as_recorded, bias_rms_mm, without_bias
+from corpus_tools.io import CorpusDescription
+from corpus_tools.pipeline.reading import Progress, RawCorpus, cleaned_recordings, read_corpus, silent
 from corpus_tools.pipeline.threads import one_thread
-from corpus_tools.pipeline.usable import (
-    chosen_markers,
-    in_order_of,
-    motion_problem,
-    seen_markers,
-    usual_markers,
-)
-from corpus_tools.speech import PhoneSet, lip_aperture_mm, phone_set, recorded_utterance
+from corpus_tools.speech import PhoneSet, lip_aperture_mm
 from corpus_tools.synthesis import (
     NaturalDistribution,
     SelectionModel,
     natural_distribution,
     prepare_selection,
 )
+from corpus_tools.synthesis.lips import LipModel, lip_model
 
-__all__ = ["OpenCorpus", "Progress", "face_only", "open_corpus", "reference_columns", "silent"]
-
-Progress = Callable[[float, str], None]
-
-
-def silent(fraction: float, what: str) -> None:
-    """Show nothing: the progress callback for when nobody waits."""
+__all__ = ["OpenCorpus", "open_corpus"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,74 +130,6 @@ class OpenCorpus:
         return self.recording(name).utterance
 
 
-def reference_columns(description: CorpusDescription, capture: Capture) -> list[int]:
-    """Return the columns of the rigid markers named by ``reference_markers`` (globs, comma separated)."""
-    patterns = [p.strip() for p in description.reference_markers.split(",") if p.strip()]
-    columns = [i for i, n in enumerate(capture.names) if any(fnmatchcase(n, p) for p in patterns)]
-    if len(columns) < 3:
-        raise CorpusError(
-            f"'reference_markers = \"{description.reference_markers}\"' in "
-            f"'{description.folder / 'corpus.toml'}' matches {len(columns)} of the markers "
-            f"{', '.join(capture.names[:6])}, ...: at least 3 rigid markers are needed to remove head motion."
-        )
-    return columns
-
-
-def face_only(capture: Capture) -> Capture:
-    """Return a capture without the markers of region "head" (jig or forehead: rigid, nothing to animate)."""
-    return chosen_markers(capture, [i for i, region in enumerate(capture.regions) if region != "head"])
-
-
-def _load(
-    description: CorpusDescription, files: Sequence[RecordingFiles], phones: PhoneSet, progress: Progress
-) -> tuple[list[tuple[Capture, Utterance]], dict[str, str]]:
-    loaded, skipped = [], {}
-    for index, item in enumerate(files):
-        progress(index / len(files), f"reading {item.id}")
-        try:
-            capture = load_capture(description, item)
-            labels = load_labels(description, item)
-            utterance = recorded_utterance(
-                item.id,
-                labels,
-                capture.audio,
-                phones,
-                phone_tier=description.phone_tier,
-                word_tier=description.word_tier,
-                duration_s=capture.audio.duration_s if capture.audio else capture.times_s[-1],
-            )
-        except WorkbenchError as error:
-            skipped[item.id] = str(error)
-            continue
-        loaded.append((capture, utterance))
-    return loaded, skipped
-
-
-def _usable(
-    description: CorpusDescription,
-    loaded: list[tuple[Capture, Utterance]],
-    skipped: dict[str, str],
-    silence: str,
-) -> list[tuple[Capture, Utterance]]:
-    """Return the recordings that units can be cut from; the others are entered in `skipped`."""
-    if not loaded:
-        return loaded
-    names = usual_markers(capture for capture, _ in loaded)
-    loaded = [(in_order_of(capture, names), utterance) for capture, utterance in loaded]
-    usual = next(utterance.name for capture, utterance in loaded if capture.names == names)
-    columns = reference_columns(description, next(c for c, _ in loaded if c.names == names))
-    kept = []
-    for capture, utterance in loaded:
-        if capture.names != names:
-            skipped[utterance.name] = f"its markers differ from those of '{usual}'."
-        elif problem := motion_problem(capture, utterance, columns, silence):
-            skipped[utterance.name] = problem
-        else:
-            kept.append((capture, utterance))
-    keep = seen_markers(c for c, _ in kept) if kept else []
-    return [(c if len(keep) == len(c.names) else chosen_markers(c, keep), u) for c, u in kept]
-
-
 @one_thread
 def open_corpus(
     folder: str | Path, config: ConfigBase | None = None, progress: Progress = silent
@@ -241,50 +151,15 @@ def open_corpus(
         No corpus there, or no recording in it can be used; the sentence says what was expected.
     """
     config = config or Config()
-    description = read_description(folder)
-    phones = phone_set(description.phones)
-    files = [f for f in find_recordings(description) if f.id not in description.exclude]
-    loaded, skipped = _load(description, files, phones, lambda f, w: progress(0.5 * f, w))
-    loaded = _usable(description, loaded, skipped, phones.silence)
-    if not files:
-        raise CorpusError(
-            f"'exclude' in '{description.file}' leaves out every recording; take some from that list."
-        )
-    if not loaded:
-        first = next(iter(skipped.items()))
-        raise CorpusError(
-            f"No recording of '{description.folder}' can be used; the first, '{first[0]}': {first[1]}"
-        )
-    progress(0.5, "cleaning")
-    if "head" in (only := set(loaded[0][0].regions)) and len(only) == 1:
-        raise CorpusError(
-            f"The recordings of '{description.folder}' show head markers only "
-            f"({loaded[0][0].names[0]}, ...); markers on the face are needed too: check their names."
-        )
-    cleaned = clean_captures(
-        [capture for capture, _ in loaded],
-        reference_columns(description, loaded[0][0]),
-        allow_scale=description.head_scale,
-        cutoff_hz=config.cleaning.cutoff_hz,
-        head_cutoff_mm=config.cleaning.head_cutoff_mm,
-        iterations=config.cleaning.head_iterations,
-        gap_method=config.cleaning.gap_method,
-        gap_longest_s=config.cleaning.gap_longest_s,
-        gap_doubt_mm=config.cleaning.gap_doubt_mm,
-        gap_components=config.cleaning.gap_components,
-        names=[utterance.name for _, utterance in loaded],
-        progress=lambda f, w: progress(0.5 + 0.35 * f, w),
-    )
-    recordings = tuple(
-        Recording(utterance, face_only(capture))
-        for capture, (_, utterance) in zip(cleaned.captures, loaded, strict=True)
-    )
+    raw = read_corpus(folder, lambda f, w: progress(0.5 * f, w))
+    recordings, scale_sd = cleaned_recordings(raw, config, progress=lambda f, w: progress(0.5 + 0.35 * f, w))
+    phones = raw.phones
     offsets: dict[str, FloatArray] = {}
     if config.cleaning.remove_bias:
         progress(0.86, "finding postures")
         recordings, offsets = without_bias(recordings, phones.silence)
     progress(0.87, "indexing units")
-    return _assemble(description, phones, recordings, skipped, config, cleaned.scale_sd, offsets, progress)
+    return _assemble(raw, recordings, config, scale_sd, offsets, progress)
 
 
 def _speech_span(recording: Recording, silence: str) -> tuple[float, float]:
@@ -318,15 +193,14 @@ def _quiet(recordings: Sequence[Recording], lips: LipModel, silence: str) -> lis
 
 
 def _assemble(
-    description: CorpusDescription,
-    phones: PhoneSet,
+    raw: RawCorpus,
     recordings: tuple[Recording, ...],
-    skipped: dict[str, str],
     config: ConfigBase,
     scale_sd: float,
     offsets_mm: dict[str, FloatArray],
     progress: Progress,
 ) -> OpenCorpus:
+    phones = raw.phones
     inventory = build_inventory(recordings)
     model = prepare_selection(inventory, phones, n_components=config.selection.components)
     progress(0.95, "natural distribution")
@@ -342,10 +216,10 @@ def _assemble(
     neutral = neutral_pose(captures, _quiet(recordings, lips, phones.silence))
     progress(1.0, "ready")
     return OpenCorpus(
-        description=description,
+        description=raw.description,
         phones=phones,
         recordings=recordings,
-        skipped=skipped,
+        skipped=raw.skipped,
         model=model,
         neutral_mm=neutral,
         natural=natural,

@@ -12,14 +12,14 @@ import numpy.typing as npt
 from corpus_tools.config import ConfigBase
 from corpus_tools.core import InputError, Selection, Trajectory, UnitRef, Utterance
 from corpus_tools.fragments import cut_fragment
-from corpus_tools.methods import METHODS
-from corpus_tools.pipeline.closing import close_bilabials
+from corpus_tools.methods import SEARCHES
 from corpus_tools.pipeline.head import Animation, Head, animate, vertex_frames
 from corpus_tools.pipeline.opened import OpenCorpus
 from corpus_tools.pipeline.overrides import overrides_of
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.pipeline.usable import LEAST_RATE_HZ
 from corpus_tools.synthesis import AlignedPieces, align_fragments, blend_pieces, rest_at_ends
+from corpus_tools.synthesis.lips import close_bilabials
 
 __all__ = ["Synthesis", "align_units", "blend_units", "select_units", "synthesise"]
 
@@ -84,7 +84,7 @@ def select_units(
         A diphone is covered by nothing, not even by backoff.
     """
     weights = config.selection.model_dump(exclude={"method", "components", "allow_backoff"})
-    method = METHODS[config.selection.method]
+    method = SEARCHES[config.selection.method]
     if config.selection.method == "greedy":
         weights.pop("prune")
     pinned, banned = overrides_of(config)

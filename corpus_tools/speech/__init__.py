@@ -2,6 +2,7 @@
 
 from corpus_tools.speech.articulators import (
     APERTURE_PAIRS,
+    CLOSURE_WINDOW_S,
     aperture_functional,
     bilabial_minima_mm,
     closure_offset,
@@ -9,6 +10,7 @@ from corpus_tools.speech.articulators import (
     jaw_mm,
     lip_aperture_mm,
     lip_pair_functionals,
+    lip_protrusion_mm,
     lip_width_mm,
 )
 from corpus_tools.speech.engines import ENGINES, Engine, SpeechRequest, prepare_espeak, speak_text
@@ -19,6 +21,7 @@ from corpus_tools.speech.utterances import labelled_utterance, recorded_utteranc
 
 __all__ = [
     "APERTURE_PAIRS",
+    "CLOSURE_WINDOW_S",
     "ENGINES",
     "MOST_CHARACTERS",
     "Engine",
@@ -35,6 +38,7 @@ __all__ = [
     "labelled_utterance",
     "lip_aperture_mm",
     "lip_pair_functionals",
+    "lip_protrusion_mm",
     "lip_width_mm",
     "normalise_text",
     "phone_map",

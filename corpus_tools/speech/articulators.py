@@ -20,6 +20,7 @@ __all__ = [
     "jaw_mm",
     "lip_aperture_mm",
     "lip_pair_functionals",
+    "lip_protrusion_mm",
     "lip_width_mm",
 ]
 
@@ -92,6 +93,20 @@ def _distance(positions_mm: FloatArray, names: Sequence[str], a: str, b: str) ->
 def lip_width_mm(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:
     """Return the distance of the mouth corners (lip_out0, lip_out6), mm, shape (n_frames,)."""
     return _distance(positions_mm, names, "lip_out0", "lip_out6")
+
+
+def lip_protrusion_mm(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:
+    """Return how far forward the middle of both lips stands, mm, shape (n_frames,).
+
+    Mean z, the axis out of the face, of the facing markers of the outer lip (of the inner lip where a layout
+    has no outer one); its zero is that of the head-stabilised space.
+    """
+    where = {n: i for i, n in enumerate(names)}
+    for pairs in (_OUTER_PAIRS, APERTURE_PAIRS):
+        columns = [where[n] for pair in pairs for n in pair if n in where]
+        if columns:
+            return np.asarray(positions_mm[:, columns, 2].mean(axis=1))
+    return np.zeros(len(positions_mm))
 
 
 def jaw_mm(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:

@@ -8,6 +8,7 @@ from corpus_tools.synthesis.closure import close_lips, closure_direction
 from corpus_tools.synthesis.effect import EffectCurve, effect_curves, narrowed, peak_ratios
 from corpus_tools.synthesis.greedy import greedy_as_printed, select_greedy
 from corpus_tools.synthesis.inertial import InertialMotion, join_inertially
+from corpus_tools.synthesis.joins import WINDOW_S as JOIN_WINDOW_S
 from corpus_tools.synthesis.joins import (
     NaturalDistribution,
     join_gaps,
@@ -28,6 +29,7 @@ from corpus_tools.synthesis.weighting import WEIGHTINGS, weighting
 
 __all__ = [
     "DEFAULT_CURVE",
+    "JOIN_WINDOW_S",
     "WEIGHTINGS",
     "AlignedPieces",
     "EffectCurve",

@@ -15,7 +15,7 @@ from corpus_tools.config import Config, config_with
 from corpus_tools.fragments import build_inventory
 from corpus_tools.io import find_recordings, load_capture, read_description
 from corpus_tools.pipeline import align_units, animate, blend_units, prepare_head, select_units, vertex_frames
-from corpus_tools.pipeline.opened import reference_columns
+from corpus_tools.pipeline.reading import reference_columns
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ import pytest
 
 from corpus_tools.config import Config, config_with
 from corpus_tools.core import InputError
+from corpus_tools.fragments.posture import as_recorded, posture_offsets_mm, without_bias
 from corpus_tools.pipeline import open_corpus
-from corpus_tools.pipeline.posture import as_recorded, posture_offsets_mm, without_bias
 from corpus_tools.speech import lip_aperture_mm
 
 

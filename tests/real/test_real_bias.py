@@ -11,8 +11,8 @@ from corpus_tools.config import Config, config_with
 from corpus_tools.fragments import build_inventory
 from corpus_tools.io import init_corpus
 from corpus_tools.pipeline import align_units, blend_units, open_corpus, select_units
-from corpus_tools.pipeline.closing import lip_model
 from corpus_tools.synthesis import prepare_selection
+from corpus_tools.synthesis.lips import lip_model
 
 
 @pytest.fixture(scope="module", params=["greedy", "viterbi"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import panel as pn
 
 from corpus_tools.mesh import CHARACTERS, DEFORMERS
-from corpus_tools.methods import METHODS
+from corpus_tools.methods import SEARCHES
 from corpus_tools.synthesis import WEIGHTINGS
 from workbench.views.controls import Controls, select
 
@@ -31,7 +31,7 @@ PRESETS = _presets()
 
 def settings_panel(controls: Controls) -> pn.Column:
     """Return the choices that are not g(u): method, overlap rule, head, deformer."""
-    methods = {name.capitalize(): name for name in METHODS}
+    methods = {name.capitalize(): name for name in SEARCHES}
     heads = {name.capitalize(): name for name in CHARACTERS}
     deformers = {name.upper() if name in ("rbf", "bid") else name.capitalize(): name for name in DEFORMERS}
     pair = {"margin": (10, 4, 2, 12)}, {"margin": (10, 12, 2, 4)}

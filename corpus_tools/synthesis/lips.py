@@ -9,7 +9,7 @@ import numpy as np
 
 from corpus_tools.core import FloatArray, Recording, Trajectory, Utterance, frozen
 from corpus_tools.speech import PhoneSet, aperture_functional, bilabial_minima_mm, closure_threshold_mm
-from corpus_tools.synthesis import close_lips, closure_direction
+from corpus_tools.synthesis.closure import close_lips, closure_direction
 
 __all__ = ["LipModel", "close_bilabials", "lip_model"]
 

@@ -1,0 +1,186 @@
+"""``corpus-tools evaluate``: methods judged on sentences that they never saw."""
+
+from __future__ import annotations
+
+import datetime
+import platform
+from collections.abc import Callable, Collection, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import corpus_tools
+from corpus_tools.cli.common import check_out_folder, emit_json, progress_bar, say
+from corpus_tools.core import InputError, Recording
+from corpus_tools.evaluate import (
+    METRICS,
+    Fold,
+    Table,
+    evaluate,
+    k_folds,
+    leave_one_out,
+    one_split,
+    tabulate,
+    write_evaluation,
+)
+from corpus_tools.methods import METHODS, Variant, parse_variant
+from corpus_tools.pipeline import (
+    RawCorpus,
+    cleaned_recordings,
+    code_hash,
+    joined_corpora,
+    library_versions,
+    one_thread,
+    read_corpus,
+)
+from corpus_tools.speech import PhoneSet
+
+__all__ = ["register"]
+
+USUAL_FOLDS = 5
+SHOWN = ("rmse", "r_aperture", "dtw", "dynamic_range", "frechet", "bilabial_closure", "join_peak")
+
+Progress = Callable[[float, str], None]
+
+
+class _Cleaned:
+    """A corpus as the evaluation asks for it: cleaned anew by what may be known in a fold."""
+
+    def __init__(self, raw: RawCorpus) -> None:
+        self._raw = raw
+
+    @property
+    def phones(self) -> PhoneSet:
+        return self._raw.phones
+
+    def cleaned(self, learn_from: Collection[str], progress: Progress) -> Sequence[Recording]:
+        return cleaned_recordings(self._raw, learn_from=frozenset(learn_from), progress=progress)[0]
+
+
+def _variants(methods: str | None) -> list[Variant]:
+    texts = [m for m in (methods or ",".join(METHODS)).split(",") if m.strip()]
+    variants = [parse_variant(text) for text in texts]
+    if not variants:
+        raise InputError(f"--methods names no method. Known: {', '.join(METHODS)}.")
+    labels = [v.label for v in variants]
+    if twice := next((x for x in labels if labels.count(x) > 1), None):
+        raise InputError(f"--methods names '{twice}' twice; name each method once.")
+    return variants
+
+
+def _split(
+    corpus: Path, test_corpus: Path | None, folds: int | None, alone: bool, seed: int, progress: Progress
+) -> tuple[RawCorpus, tuple[Fold, ...], str]:
+    """Return the recordings, which of them are tested together, and how that is called."""
+    raw = read_corpus(corpus, progress)
+    if test_corpus is not None:
+        both = joined_corpora(raw, read_corpus(test_corpus, progress))
+        tested = both.names[len(raw.names) :]
+        return both, one_split(raw.names, tested), f"test corpus of {len(tested)} sentences"
+    if alone:
+        return raw, leave_one_out(raw.names, seed), "leave-one-out"
+    n = USUAL_FOLDS if folds is None else folds
+    return raw, k_folds(raw.names, n, seed), f"{n} folds"
+
+
+def _about(raw: RawCorpus, how: str, variants: Sequence[Variant], seed: int) -> dict[str, Any]:
+    return {
+        "corpus": raw.description.name or raw.description.folder.name,
+        "split": how,
+        "seed": seed,
+        "methods": {v.label: {**v.method.settings, **v.changes} for v in variants},
+        "left_out": raw.skipped,
+        "program": {"version": corpus_tools.__version__, "code_sha256": code_hash()},
+        "libraries": library_versions(),
+    }
+
+
+def _tell(table: Table, failures: int, out: Path) -> None:
+    shown = [m for m in SHOWN if any((method, m) in table.values for method in table.methods)]
+    width = max(len(m) for m in table.methods)
+    say("  ".join([" " * width, *(f"{m:>{max(8, len(m))}}" for m in shown)]))
+    for method in table.methods:
+        cells = (table.values.get((method, m)) for m in shown)
+        texts = ("" if c is None else f"{c.value:.3f}" for c in cells)
+        row = (f"{text:>{max(8, len(m))}}" for text, m in zip(texts, shown, strict=True))
+        say("  ".join([f"{method:<{width}}", *row]).rstrip())
+    say("Read error and realism together: 'natural' and 'repetition' are what speech itself scores.")
+    if failures:
+        say(f"▲ {failures} times a method could not speak a sentence: left out of its row (table.json).")
+    say(f"{len(METRICS)} metrics with intervals: {out / 'report.html'}, {out / 'table.csv'}")
+
+
+@one_thread
+def _run(
+    corpus: Path,
+    out: Path,
+    test_corpus: Path | None,
+    folds: int | None,
+    alone: bool,
+    variants: Sequence[Variant],
+    seed: int,
+) -> tuple[Table, dict[str, Any], int]:
+    with progress_bar("reading") as progress:
+        raw, split, how = _split(corpus, test_corpus, folds, alone, seed, lambda f, w: progress(0.03 * f, w))
+        result = evaluate(
+            _Cleaned(raw), split, variants, seed=seed, progress=lambda f, w: progress(0.03 + 0.94 * f, w)
+        )
+        progress(0.97, "resampling sentences")
+        table = tabulate(result, seed)
+        about = _about(raw, how, variants, seed)
+        now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+        run = {"date": now, "host": platform.node(), "system": platform.platform()}
+        write_evaluation(out, result, table, about, run)
+    return table, about, len(result.failures)
+
+
+def evaluate_(
+    corpus: Annotated[Path, typer.Argument(help="Corpus folder, as 'corpus-tools init' made it.")],
+    out: Annotated[Path, typer.Option("--out", help="Folder for table.csv, sentences.csv, report.html, ...")],
+    folds: Annotated[
+        int | None, typer.Option("--folds", help=f"Parts, each held out once ({USUAL_FOLDS}).")
+    ] = None,
+    alone: Annotated[
+        bool, typer.Option("--leave-one-out", help="Hold out each recording alone (slow: fits as often).")
+    ] = False,
+    test_corpus: Annotated[
+        Path | None,
+        typer.Option("--test-corpus", help="Learn from CORPUS, test on this one."),
+    ] = None,
+    methods: Annotated[
+        str | None,
+        typer.Option(
+            "--methods",
+            help=f"By comma: {', '.join(METHODS)}; settings after a colon, as in "
+            "viterbi:mode=inertial+remove_bias=off. All methods by default.",
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of folds, resamples and repetitions.")] = 0,
+    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")] = False,
+) -> None:
+    """Judge methods on held-out sentences: error, realism, closures and joins, with intervals over sentences.
+
+    Everything is learned from the other folds alone; a tested recording gives its phones and their times.
+
+    Example: corpus-tools evaluate WORK --folds 5 --methods dominance-phone,greedy,viterbi --out OUT
+    """
+    if sum((folds is not None, alone, test_corpus is not None)) > 1:
+        raise InputError("--folds, --leave-one-out and --test-corpus exclude each other; give one of them.")
+    variants = _variants(methods)
+    check_out_folder(out, corpus)
+    if test_corpus is not None:
+        check_out_folder(out, test_corpus)
+    table, about, failures = _run(corpus, out, test_corpus, folds, alone, variants, seed)
+    _tell(table, failures, out)
+    if json_:
+        rows = [
+            {"method": a, "metric": m, "value": e.value, "low": e.low, "high": e.high, "n": e.n}
+            for (a, m), e in table.values.items()
+        ]
+        emit_json({"out": str(out), "split": about["split"], "sentences": table.n_sentences, "values": rows})
+
+
+def register(app: typer.Typer) -> None:
+    """Enter the command in the app."""
+    app.command("evaluate")(evaluate_)

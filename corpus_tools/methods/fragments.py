@@ -1,0 +1,112 @@
+"""Motion fragments (paper A) as methods: greedy and Viterbi, each step beyond the paper with a switch."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from corpus_tools.core import InputError, Trajectory, Utterance
+from corpus_tools.fragments import cut_fragment
+from corpus_tools.methods.registry import METHODS, SEARCHES, Method, Predictor
+from corpus_tools.methods.training import TrainingSet
+from corpus_tools.synthesis import render_selection
+from corpus_tools.synthesis.lips import close_bilabials
+
+__all__ = ["fit_greedy", "fit_viterbi"]
+
+CONTEXT_S = 0.4
+"""Motion cut on both sides of a unit, s: half the longest overlap and a margin for resampling."""
+
+LIP_COMPONENTS = 16
+ROUNDS = 3
+"""Of closure projection, as in the config of a synthesis."""
+
+
+def _fit(
+    training: TrainingSet,
+    search: str,
+    weights: dict[str, float],
+    blend: dict[str, Any],
+    remove_bias: bool,
+    closure: bool,
+    components: int = 12,
+) -> Predictor:
+    if blend["mode"] not in ("crossfade", "inertial"):
+        raise InputError(f"There is no blend mode '{blend['mode']}'. Known: crossfade, inertial.")
+    model = training.selection(remove_bias, components)
+    lips = training.lips(remove_bias, LIP_COMPONENTS) if closure else None
+
+    def predict(utterance: Utterance) -> Trajectory:
+        selection = SEARCHES[search].search(model, utterance, n_rejected=0, **weights)
+        fragments = [cut_fragment(model.inventory, c.unit, CONTEXT_S) for c in selection.chosen]
+        motion = render_selection(
+            selection,
+            utterance,
+            fragments,
+            names=training.markers,
+            rate_hz=training.rate_hz,
+            silence=training.phones.silence,
+            **blend,
+        )
+        return close_bilabials(lips, motion, utterance, training.phones, ROUNDS) if lips else motion
+
+    return predict
+
+
+def fit_greedy(
+    training: TrainingSet,
+    remove_bias: bool = True,
+    closure: bool = True,
+    mode: str = "crossfade",
+    weighting: str = "smootherstep",
+    overlap_s: float = 0.12,
+    inertial_s: float = 0.12,
+    duration: float = 1.0,
+    context: float = 0.3,
+) -> Predictor:
+    """Index the recordings for the longest-first search of paper A.
+
+    Parameters
+    ----------
+    training : TrainingSet
+    remove_bias : bool
+        Cut units from recordings freed of the posture that each keeps constantly.
+    closure : bool
+        Close the lips where a bilabial stayed open.
+    mode : {"crossfade", "inertial"}
+    weighting, overlap_s, inertial_s
+        As of :func:`~corpus_tools.synthesis.blend_pieces`.
+    duration, context : float
+        Weights of timing and context among fragments of the same length.
+    """
+    blend: dict[str, Any] = {"mode": mode, "weighting": weighting, "overlap_s": overlap_s}
+    weights = {"duration": duration, "context": context}
+    return _fit(training, "greedy", weights, blend | {"inertial_s": inertial_s}, remove_bias, closure)
+
+
+def fit_viterbi(
+    training: TrainingSet,
+    remove_bias: bool = True,
+    closure: bool = True,
+    mode: str = "crossfade",
+    weighting: str = "smootherstep",
+    overlap_s: float = 0.12,
+    inertial_s: float = 0.12,
+    duration: float = 1.0,
+    context: float = 0.3,
+    backoff: float = 2.0,
+    join: float = 1.0,
+    velocity: float = 0.3,
+    per_join: float = 0.0,
+) -> Predictor:
+    """Index the recordings for the search of the cheapest path.
+
+    Parameters as of :func:`fit_greedy`, and the weights of :func:`~corpus_tools.synthesis.select_viterbi`.
+    """
+    blend: dict[str, Any] = {"mode": mode, "weighting": weighting, "overlap_s": overlap_s}
+    weights = {"duration": duration, "context": context, "backoff": backoff, "join": join}
+    weights |= {"velocity": velocity, "per_join": per_join}
+    return _fit(training, "viterbi", weights, blend | {"inertial_s": inertial_s}, remove_bias, closure)
+
+
+METHODS.add("greedy", Method("greedy", SEARCHES["greedy"].summary, fit_greedy))
+METHODS.add("viterbi", Method("viterbi", SEARCHES["viterbi"].summary, fit_viterbi))

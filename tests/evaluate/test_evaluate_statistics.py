@@ -1,0 +1,143 @@
+"""Folds, intervals, and what the natural repetition of a word is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strategies.talking import PHONES, motion_of, speak, talk
+
+from corpus_tools.core import InputError, Recording
+from corpus_tools.evaluate import METRICS, Fold, k_folds, leave_one_out, one_split
+from corpus_tools.evaluate.bootstrap import drawn_values, estimate, ratio, resamples
+from corpus_tools.evaluate.metrics import Metric
+from corpus_tools.evaluate.metrics.registry import mean_of_sentences, quotient
+from corpus_tools.evaluate.repetition import RepeatedWords
+
+NAMES = [f"n{i:02d}" for i in range(23)]
+
+
+@given(st.integers(2, 23), st.integers(0, 1000))
+def test_folds_test_everything_once_and_never_train_on_it(k, seed):
+    folds = k_folds(NAMES, k, seed)
+    assert len(folds) == k
+    assert sorted(n for f in folds for n in f.test) == NAMES
+    sizes = [len(f.test) for f in folds]
+    assert max(sizes) - min(sizes) <= 1
+    for fold in folds:
+        assert sorted((*fold.train, *fold.test)) == NAMES
+    assert folds == k_folds(NAMES[::-1], k, seed)
+
+
+def test_folds_are_drawn_by_the_seed():
+    assert k_folds(NAMES, 5, 0) != k_folds(NAMES, 5, 1)
+
+
+@given(st.integers(4, 23))
+def test_leave_one_out_leaves_out_one(n):
+    folds = leave_one_out(NAMES[:n])
+    assert sorted(f.test[0] for f in folds) == NAMES[:n]
+    assert all(len(f.test) == 1 and sorted((*f.train, *f.test)) == NAMES[:n] for f in folds)
+    groups = [f.group for f in folds]
+    assert groups == sorted(groups)  # a group is cleaned once
+    assert all(groups.count(g) < n for g in groups)
+
+
+@pytest.mark.parametrize("k", [-1, 0, 1, 24])
+def test_impossible_folds_are_refused(k):
+    with pytest.raises(InputError, match=f"--folds is {k}: a number from 2 to 23"):
+        k_folds(NAMES, k)
+    with pytest.raises(InputError, match="at least 4"):
+        leave_one_out(NAMES[:3])
+
+
+def test_a_fold_cannot_train_on_what_it_tests():
+    with pytest.raises(ValueError, match="'b' is trained on and tested"):
+        Fold(0, ("a", "b"), ("b",))
+    assert one_split(["b", "a"], ["c"]) == (Fold(0, ("a", "b"), ("c",)),)
+
+
+GROUPS = np.repeat([0, 1, 2], [40, 40, 20])
+COUNTS = resamples(GROUPS, seed=4, n_draws=2000)
+MEAN = Metric("mean", "", "low", "", lambda c: np.zeros(1), mean_of_sentences)
+QUOTIENT = Metric("quotient", "", "low", "", lambda c: np.zeros(2), quotient, per=1)
+
+
+def test_resamples_keep_the_size_of_every_fold():
+    for group, size in enumerate((40, 40, 20)):
+        np.testing.assert_array_equal(COUNTS[:, group == GROUPS].sum(axis=1), size)
+    np.testing.assert_array_equal(COUNTS, resamples(GROUPS, seed=4, n_draws=2000))
+    assert (COUNTS[:5] != resamples(GROUPS, seed=5, n_draws=5)).any()
+
+
+def test_the_interval_of_a_mean_is_that_of_the_textbook():
+    values = np.random.default_rng(0).normal(3, 1, 100)
+    found = estimate(drawn_values(MEAN, values[:, None], COUNTS, GROUPS, []))
+    half = 1.96 * np.sqrt(sum((g == GROUPS).sum() * values[g == GROUPS].var() for g in range(3))) / 100
+    assert found.value == pytest.approx(values.mean())
+    assert found.low == pytest.approx(values.mean() - half, abs=0.15 * half)
+    assert found.high == pytest.approx(values.mean() + half, abs=0.15 * half)
+    assert found.n == 100
+
+
+def test_sentences_without_a_value_do_not_count():
+    values = np.full((100, 1), 2.0)
+    values[:30] = np.nan
+    found = estimate(drawn_values(MEAN, values, COUNTS, GROUPS, []))
+    assert (found.value, found.low, found.high, found.n) == (2, 2, 2, 70)
+    shares = np.array([[1.0, 2.0]] * 50 + [[0.0, 0.0]] * 50)
+    found = estimate(drawn_values(QUOTIENT, shares, COUNTS, GROUPS, []))
+    assert (found.value, found.n) == (0.5, 50)
+
+
+def test_paired_ratios_are_sharper_than_their_parts():
+    rng = np.random.default_rng(1)
+    hard = rng.uniform(1, 5, 100)  # sentences differ much, methods little
+    a, b = (drawn_values(MEAN, (hard * f)[:, None], COUNTS, GROUPS, []) for f in (0.9, 1.0))
+    noisy = drawn_values(MEAN, (hard * 0.9 * rng.normal(1, 0.02, 100))[:, None], COUNTS, GROUPS, [])
+    assert (ratio(a, b).low, ratio(a, b).high) == (pytest.approx(0.9), pytest.approx(0.9))
+    assert ratio(a, a).value == 1
+    spread, whole = ratio(noisy, b), estimate(b)
+    assert spread.low < 0.9 < spread.high
+    assert spread.high - spread.low < 0.1 * (whole.high - whole.low)
+
+
+def test_the_same_word_between_the_same_words_is_found_and_laid_onto_the_labels():
+    rng = np.random.default_rng(0)
+    spoken = [speak(f"w{i}", ["bin", "two", "set"], rng) for i in range(2)]
+    mine, other = (Recording(s, motion_of(s, rng, noise_mm=0)) for s in spoken)
+    words = RepeatedWords([other], PHONES.silence)
+    here, again = words.repeated(mine, rng)
+    times = mine.capture.times_s
+    inside = (times >= 0.5) & (times <= spoken[0].words.intervals[-1].end_s)
+    np.testing.assert_array_equal(here, inside)
+    # laid onto itself a word is itself
+    own, same = RepeatedWords([mine], PHONES.silence).repeated(mine, rng)
+    np.testing.assert_allclose(same.values_mm[own], mine.capture.positions_mm[own], atol=1e-9)
+    assert np.abs(again.values_mm[here] - mine.capture.positions_mm[here]).max() > 0.2
+
+
+def test_other_neighbours_are_another_word():
+    rng = np.random.default_rng(0)
+    one, two = (
+        Recording(s, motion_of(s, rng))
+        for s in (speak("a", ["bin", "two", "set"], rng), speak("b", ["may", "two", "now"], rng))
+    )
+    here, _ = RepeatedWords([two], PHONES.silence).repeated(one, rng)
+    assert not here.any()
+
+
+def test_words_of_other_recordings_only():
+    """The floor of a sentence never comes from the sentence itself."""
+    recordings = talk(6, words=2)
+    words = RepeatedWords(recordings[1:], PHONES.silence)
+    here, again = words.repeated(recordings[0], np.random.default_rng(0))
+    if here.any():
+        assert np.abs(again.values_mm[here] - recordings[0].capture.positions_mm[here]).max() > 0.1
+
+
+def test_metric_ids_are_words_of_a_table():
+    for name in METRICS:
+        assert name == name.lower()
+        assert name.replace("_", "").isalnum()
