@@ -8,14 +8,9 @@ from pathlib import Path
 
 from corpus_tools.core import FloatArray, atomic_file
 from corpus_tools.io.formats import MOTION_WRITERS
-from corpus_tools.io.writing import checked_motion
+from corpus_tools.io.writing import cell_text, checked_motion, timed_rows
 
 __all__ = ["write_csv", "write_csv_long"]
-
-
-def _cell(value: float) -> str:
-    """Return the shortest text that gives the number back; blank for NaN."""
-    return "" if value != value else repr(value)
 
 
 def _write(path: str | Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
@@ -43,8 +38,8 @@ def write_csv(path: str | Path, positions_mm: FloatArray, names: Sequence[str], 
     """
     positions, labels = checked_motion(path, positions_mm, names, rate_hz)
     header = ["time_s", *(f"{name}_{axis} (mm)" for name in labels for axis in "XYZ")]
-    flat = positions.reshape(len(positions), -1).tolist()
-    _write(path, header, ([repr(i / rate_hz), *map(_cell, row)] for i, row in enumerate(flat)))
+    rows = timed_rows(positions, rate_hz)
+    _write(path, header, ([repr(time_s), *map(cell_text, row)] for _, time_s, row in rows))
 
 
 @MOTION_WRITERS.register("csv-long")
@@ -60,10 +55,12 @@ def write_csv_long(path: str | Path, positions_mm: FloatArray, names: Sequence[s
     """
     positions, labels = checked_motion(path, positions_mm, names, rate_hz)
     header = ["frame", "time_s", "marker", "x_mm", "y_mm", "z_mm"]
-    rows: list[list[str]] = []
-    for i, frame in enumerate(positions.tolist()):
-        rows += [
-            [str(i), repr(i / rate_hz), name, *map(_cell, xyz)]
-            for name, xyz in zip(labels, frame, strict=True)
-        ]
-    _write(path, header, rows)
+    _write(
+        path,
+        header,
+        (
+            [str(i), repr(time_s), name, *map(cell_text, row[3 * k : 3 * k + 3])]
+            for i, time_s, row in timed_rows(positions, rate_hz)
+            for k, name in enumerate(labels)
+        ),
+    )

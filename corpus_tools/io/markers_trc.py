@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from corpus_tools.core import Capture, FloatArray, MotionError, atomic_file
 from corpus_tools.io.formats import MOTION_READERS, MOTION_WRITERS
 from corpus_tools.io.motion_clock import frames_of_times, placed
 from corpus_tools.io.motion_parts import Notes, capture_of, chosen_rate, unit_factor
 from corpus_tools.io.table import Table, decimals, numbers, text_of
-from corpus_tools.io.writing import checked_motion
+from corpus_tools.io.writing import cell_text, checked_motion, timed_rows
 
 __all__ = ["read_trc", "write_trc"]
 
@@ -173,10 +171,6 @@ def _stated_rate(path: Path, head: _Head, by_times_hz: float | None, rate_hz: fl
     return stated
 
 
-def _cell(value: float) -> str:
-    return "" if np.isnan(value) else f"{value:.6f}"
-
-
 @MOTION_WRITERS.register("trc")
 def write_trc(path: str | Path, positions_mm: FloatArray, names: Sequence[str], rate_hz: float) -> None:
     """Write marker motion as TRC: mm to six decimals, missing positions blank; equal motion, equal bytes.
@@ -198,8 +192,8 @@ def write_trc(path: str | Path, positions_mm: FloatArray, names: Sequence[str], 
         "\t\t" + "\t".join(f"{a}{i}" for i in range(1, len(labels) + 1) for a in "XYZ"),
         "",
     ]
-    for i, frame in enumerate(positions.reshape(n, -1)):
-        cells = "\t".join(_cell(v) for v in frame.tolist())
-        out.append(f"{i + 1}\t{i / rate_hz:.9f}\t{cells}")
+    for i, time_s, row in timed_rows(positions, rate_hz):
+        cells = "\t".join(cell_text(v, digits=6) for v in row)
+        out.append(f"{i + 1}\t{time_s:.9f}\t{cells}")
     with atomic_file(path) as temporary:
         temporary.write_text("\n".join(out) + "\n", encoding="utf-8", newline="\n")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from corpus_tools.core import Capture, FloatArray, MotionError, Trajectory
 from corpus_tools.io.formats import MOTION_WRITERS
 
-__all__ = ["checked_motion", "write_motion_file"]
+__all__ = ["cell_text", "checked_motion", "timed_rows", "write_motion_file"]
 
 
 def checked_motion(
@@ -42,6 +42,22 @@ def checked_motion(
                 "characters that cannot be printed; rename it."
             )
     return positions, labels
+
+
+def cell_text(value: float, digits: int | None = None) -> str:
+    """Return a number as a cell of a text table: blank for NaN.
+
+    Without `digits` it is the shortest text that gives the number back.
+    """
+    if value != value:
+        return ""
+    return repr(value) if digits is None else f"{value:.{digits}f}"
+
+
+def timed_rows(positions_mm: FloatArray, rate_hz: float) -> Iterator[tuple[int, float, list[float]]]:
+    """Yield (frame from 0, time in s, x y z of every marker, mm) of each frame, as text tables hold them."""
+    for index, row in enumerate(positions_mm.reshape(len(positions_mm), -1).tolist()):
+        yield index, index / rate_hz, row
 
 
 def write_motion_file(path: str | Path, motion: Capture | Trajectory, format: str | None = None) -> None:

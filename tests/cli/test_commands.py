@@ -9,36 +9,18 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from corpus_tools.cli.common import guarded
-from corpus_tools.cli.main import app
 from corpus_tools.config import Config, config_with, write_config
 from corpus_tools.io import find_recordings, read_description, read_labels
 from corpus_tools.pipeline.outputs import JOIN_COLUMNS
+from tests.cli.answers import START, last_json
 
 FILES = {"motion.npz", "mesh.npz", "speech.wav", "labels.TextGrid", "joins.csv", "manifest.json", "run.json"}
-
-
-@pytest.fixture
-def tool(capsys):
-    """Return ``tool(*args) -> (exit code, stdout, stderr)``, run in this process."""
-
-    def run(*args):
-        capsys.readouterr()
-        try:
-            code = guarded(lambda: app([str(a) for a in args], standalone_mode=True))
-        except SystemExit as stop:
-            code = stop.code or 0
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return run
 
 
 def digest(folder):
@@ -61,7 +43,7 @@ def test_synth_writes_the_whole_folder_and_leaves_the_corpus_alone(
         "synth", simulated_corpus, "--utterance", sentence, "--out", tmp_path / "o", "--json"
     )
     assert (code, err) == (0, "")
-    summary = json.loads(out.splitlines()[-1])
+    summary = last_json(out)
     assert {p.name for p in (tmp_path / "o").iterdir()} == FILES
     motion, mesh = np.load(tmp_path / "o/motion.npz"), np.load(tmp_path / "o/mesh.npz")
     assert motion["markers_mm"].shape == (summary["frames"], 66, 3)
@@ -133,17 +115,17 @@ def test_a_config_changes_the_motion_and_flags_override_it(tool, simulated_corpu
 
 def test_check_units_coverage_print_json(tool, simulated_corpus):
     code, out, _ = tool("check", simulated_corpus, "--json")
-    report = json.loads(out.splitlines()[-1])
+    report = last_json(out)
     assert code == 0
     assert report["summary"]["recordings"] == len(report["recordings"]) > 5
     assert report["summary"]["with_gaps"] == sum(bool(r["gaps"]) for r in report["recordings"]) > 0
     assert {"id", "n_frames", "rate_hz", "duration_s", "gaps", "problems"} <= set(report["recordings"][0])
     code, out, _ = tool("units", simulated_corpus, "--json")
     assert code == 0
-    assert json.loads(out.splitlines()[-1])["recordings"] == report["summary"]["recordings"]
+    assert last_json(out)["recordings"] == report["summary"]["recordings"]
     code, out, _ = tool("coverage", simulated_corpus, "--json")
     assert code == 0
-    report = json.loads(out.splitlines()[-1])
+    report = last_json(out)
     assert 0 < report["mean"] <= 1
     told = " ".join(out.splitlines()[:-1])
     assert report["diphones"]
@@ -159,9 +141,7 @@ def test_config_commands(tool, tmp_path):
     assert tool("config", "check", tmp_path / "a.toml")[0] == 0
     write_config(tmp_path / "b.toml", config_with(Config(), blend__shape=0.5))
     code, out, _ = tool("config", "diff", tmp_path / "a.toml", tmp_path / "b.toml", "--json")
-    assert json.loads(out.splitlines()[-1]) == {
-        "changes": [{"key": "blend.shape", "before": 0.0, "after": 0.5}]
-    }
+    assert last_json(out) == {"changes": [{"key": "blend.shape", "before": 0.0, "after": 0.5}]}
     code, out, _ = tool("config", "show", "--json")
     assert json.loads(out)["blend"]["weighting"] == "smootherstep"
     code, out, _ = tool("config", "schema")
@@ -234,7 +214,7 @@ def test_unwritable_output_is_refused_before_the_work(tool, bad, simulated_corpu
 
 
 def test_interrupted_in_the_middle_nothing_remains(simulated_corpus, sentence, tmp_path):
-    command = [sys.executable, "-c", "from corpus_tools.cli.main import run; run()"]
+    command = START
     args = ["synth", str(simulated_corpus), "--utterance", sentence, "--out", str(tmp_path / "out")]
     process = subprocess.Popen(
         command + args, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env={**os.environ}

@@ -4,10 +4,9 @@ import json
 
 import pytest
 
-from corpus_tools.cli.common import guarded
-from corpus_tools.cli.main import app
 from corpus_tools.demo import time_grammar
 from corpus_tools.io import find_recordings, load_capture, read_description
+from tests.cli.answers import last_json
 
 MINE = """
 [grammar]
@@ -20,18 +19,6 @@ ann = "AE N"
 sings = "S IH NG Z"
 naps = "N AE P S"
 """
-
-
-@pytest.fixture
-def tool(capsys):
-    """Run a command; returns its exit code, stdout and stderr."""
-
-    def run(*args):
-        code = guarded(lambda: app([str(a) for a in args], standalone_mode=True))
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return run
 
 
 @pytest.fixture
@@ -96,7 +83,7 @@ def test_demo_makes_a_corpus_of_the_asked_size_and_layout(tool, tmp_path):
     code, out, _ = tool("demo", folder, "--sentences", "2", "--layout", "outer-lips", "--json")
     assert code == 0
     assert "2 simulated recordings, spoken by the embedded voice" in out
-    assert json.loads(out.splitlines()[-1]) == {
+    assert last_json(out) == {
         "corpus": str(folder),
         "recordings": 2,
         "simulated": True,

@@ -13,31 +13,13 @@ import time
 import numpy as np
 import pytest
 
-from corpus_tools.cli.common import guarded
-from corpus_tools.cli.main import app
 from corpus_tools.core import MeshError, OutputError, atomic_folder
 from corpus_tools.core.files import _move_all
 from corpus_tools.io import find_recordings, read_description
 from corpus_tools.mesh import bundled_head, write_mesh
+from tests.cli.answers import START, last_json, refused
 
 LONG = "x" * 5000
-START = [sys.executable, "-c", "from corpus_tools.cli.start import run; run()"]
-
-
-@pytest.fixture
-def tool(capsys):
-    """Return ``tool(*args) -> (exit code, stdout, stderr)``, run in this process."""
-
-    def run(*args):
-        capsys.readouterr()
-        try:
-            code = guarded(lambda: app([str(a) for a in args], standalone_mode=True))
-        except SystemExit as stop:
-            code = stop.code or 0
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return run
 
 
 @pytest.fixture
@@ -65,16 +47,6 @@ def change(path, **arrays):
 def positions(path):
     with np.load(path) as data:
         return data["xyz"].copy()
-
-
-def refused(answer, *words):
-    """Check exit 2 and one sentence that holds `words`."""
-    code, out, err = answer
-    assert code == 2, out + err
-    assert len(err.splitlines()) == 1
-    for word in words:
-        assert word in err
-    assert "Traceback" not in out + err
 
 
 def textgrid(path, rows):
@@ -158,10 +130,10 @@ def test_one_damaged_recording_is_left_out_and_named(tool, corpus, tmp_path):
         change(first.motion, **({"fps": np.float64(120.0)} | damage))
         code, out, err = tool(*args)
         assert (code, err) == (0, "")
-        assert list(json.loads(out.splitlines()[-1])["left_out"]) == [first.id]
+        assert list(last_json(out)["left_out"]) == [first.id]
         assert f"1 recordings were left out ({first.id})" in out
         code, out, _ = tool("check", corpus, "--json")
-        row = next(r for r in json.loads(out.splitlines()[-1])["recordings"] if r["id"] == first.id)
+        row = next(r for r in last_json(out)["recordings"] if r["id"] == first.id)
         assert code == 0
         assert row["problems"]
 

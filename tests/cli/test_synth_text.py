@@ -11,46 +11,14 @@ import sys
 import numpy as np
 import pytest
 
-from corpus_tools.cli.common import guarded
-from corpus_tools.cli.main import app
 from corpus_tools.config import Config, config_with, write_config
 from corpus_tools.io import find_recordings, read_audio, read_description, read_labels
 from corpus_tools.pipeline import open_corpus
 from corpus_tools.speech import MOST_CHARACTERS
 from corpus_tools.speech.engines import espeak
+from tests.cli.answers import last_json, refused
 
 SENTENCE = "the time is now five past one in the morning"
-
-
-@pytest.fixture
-def tool(capsys):
-    """Return ``tool(*args) -> (exit code, stdout, stderr)``, run in this process."""
-
-    def run(*args):
-        capsys.readouterr()
-        try:
-            code = guarded(lambda: app([str(a) for a in args], standalone_mode=True))
-        except SystemExit as stop:
-            code = stop.code or 0
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return run
-
-
-def refused(answer, *words):
-    """Check exit 2 and one sentence that holds `words`."""
-    code, out, err = answer
-    assert code == 2, out + err
-    assert len(err.splitlines()) == 1
-    assert len(err) < 400
-    for word in words:
-        assert word in err
-    assert "Traceback" not in out + err
-
-
-def last_json(out):
-    return json.loads(out.splitlines()[-1])
 
 
 @pytest.fixture(scope="module")
