@@ -14,6 +14,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -23,11 +24,13 @@ from corpus_tools.io import find_recordings, read_description
 __all__ = [
     "EXIT_BUG",
     "EXIT_INPUT",
+    "PATH",
     "OneSentence",
     "StoppedByUser",
     "check_out_folder",
     "emit_json",
     "guarded",
+    "path_argument",
     "progress_bar",
     "say",
 ]
@@ -39,7 +42,7 @@ EXIT_BUG = 1
 _SURROUNDINGS = frozenset(
     getattr(errno, name)
     for name in (
-        *("EACCES", "EPERM", "EROFS", "ENOSPC", "EDQUOT", "EIO", "ENAMETOOLONG"),
+        *("EACCES", "EPERM", "EROFS", "ENOSPC", "EDQUOT", "EFBIG", "EIO", "ENAMETOOLONG"),
         *("ELOOP", "EMFILE", "ENFILE", "ENOTDIR", "EISDIR", "ENOENT", "ESTALE"),
     )
     if hasattr(errno, name)
@@ -58,6 +61,23 @@ def say(text: str = "") -> None:
 def emit_json(data: Mapping[str, Any]) -> None:
     """Print one JSON object as the last line of stdout."""
     say(json.dumps(data, ensure_ascii=False, allow_nan=False, default=str))
+
+
+def path_argument(text: str) -> Path:
+    """Return a path of the command line; parser of typer options.
+
+    Raises
+    ------
+    typer.BadParameter
+        It is blank: that would stand for the folder one happens to be in.
+    """
+    if not str(text).strip():
+        raise typer.BadParameter("it is empty, a path was expected ('.' is the present folder)")
+    return Path(text)
+
+
+PATH: dict[str, Any] = {"parser": path_argument, "metavar": "PATH"}
+"""What typer is told of every path: ``typer.Option("--out", **PATH, help=...)``."""
 
 
 @contextlib.contextmanager

@@ -8,17 +8,20 @@ from typing import Annotated
 
 import typer
 
-from corpus_tools.cli.common import emit_json, say
+from corpus_tools.cli.common import PATH, emit_json, say
 from corpus_tools.config import Config, config_diff, config_schema, config_text, load_config
+from corpus_tools.core import counted
 
 __all__ = ["register"]
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")]
-File = Annotated[Path, typer.Argument(help="A config file (TOML).")]
+File = Annotated[Path, typer.Argument(**PATH, help="A config file (TOML).")]
 
 
 def show(
-    file: Annotated[Path | None, typer.Argument(help="A config file; the defaults when left out.")] = None,
+    file: Annotated[
+        Path | None, typer.Argument(**PATH, help="A config file; the defaults when left out.")
+    ] = None,
     json_: Json = False,
 ) -> None:
     """Show every value of a config, or the defaults; redirected into a file, the start of your own."""
@@ -36,7 +39,7 @@ def check(file: File, json_: Json = False) -> None:
     if json_:
         emit_json({"ok": True, "file": str(file), "changed": [key for key, _, _ in changed]})
     else:
-        say(f"{file}: in order; {len(changed)} values differ from the defaults.")
+        say(f"{file}: in order; {counted(len(changed), 'value differs', 'values differ')} from the defaults.")
 
 
 def diff(before: File, after: File, json_: Json = False) -> None:

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from corpus_tools.cli.common import emit_json, progress_bar, say
-from corpus_tools.core import InputError
+from corpus_tools.cli.common import PATH, emit_json, progress_bar, say
+from corpus_tools.core import InputError, counted
 from corpus_tools.fragments import coverage, unit_views
 from corpus_tools.io import find_recordings, init_corpus
 from corpus_tools.pipeline import check_corpus, health_lines, open_corpus
@@ -18,7 +18,7 @@ from corpus_tools.speech import phone_set
 
 __all__ = ["register"]
 
-Folder = Annotated[Path, typer.Argument(help="Corpus folder (with corpus.toml).")]
+Folder = Annotated[Path, typer.Argument(**PATH, help="Corpus folder (with corpus.toml).")]
 MOST_SENTENCES = 10
 """Sentences that `coverage` names, least covered first (our choice: a screen is read, not a list of all)."""
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")]
@@ -35,7 +35,7 @@ def _settings(pairs: list[str]) -> dict[str, str]:
 
 
 def init(
-    folder: Annotated[Path, typer.Argument(help="New folder for corpus.toml and the work files.")],
+    folder: Annotated[Path, typer.Argument(**PATH, help="New folder for corpus.toml and the work files.")],
     motion: Annotated[
         str,
         typer.Option(
@@ -64,7 +64,12 @@ def init(
         phone_set(settings["phones"])  # an unknown one is refused before anything is written
     description = init_corpus(folder, motion=motion, audio=audio, labels=labels, settings=settings)
     found = find_recordings(description)
-    say(f"{folder / 'corpus.toml'}: {len(found)} recordings. Next: corpus-tools check {folder}")
+    told = counted(len(found), "recording")
+    for what, pattern in (("audio", description.audio), ("labels", description.labels)):
+        have = sum(getattr(files, what) is not None for files in found)
+        if pattern and have < len(found):
+            told += f", {have} with {what}"
+    say(f"{folder / 'corpus.toml'}: {told}. Next: corpus-tools check {folder}")
     if json_:
         emit_json({"corpus": str(folder), "recordings": len(found)})
 
@@ -103,9 +108,10 @@ def coverage_(corpus: Folder, json_: Json = False) -> None:
         opened = open_corpus(corpus, progress=progress)
     report = coverage(opened.inventory, [r.utterance for r in opened.recordings], leave_one_out=True)
     data = report.as_dict()
+    types, sentences = counted(data["n_diphone_types"], "diphone type"), data["n_utterances"]
     say(
-        f"{data['n_diphone_types']} diphone types; leave-one-out coverage mean {data['mean']:.3f}, "
-        f"least {data['min']:.3f}; {data['n_full']} of {data['n_utterances']} sentences fully covered."
+        f"{types}; leave-one-out coverage mean {data['mean']:.3f}, least {data['min']:.3f}; "
+        f"{data['n_full']} of {counted(sentences, 'sentence')} fully covered."
     )
     for line in _diphone_lines(data):
         say(line)
@@ -127,7 +133,7 @@ def _diphone_lines(data: dict[str, Any]) -> Iterator[str]:
     for u in least[:MOST_SENTENCES]:
         yield f"  {u['id']}  {u['coverage']:.3f}  lacks {', '.join(u['missing'])}"
     if len(least) > MOST_SENTENCES:
-        yield f"  and {len(least) - MOST_SENTENCES} more (all of them with --json)"
+        yield f"  and {counted(len(least) - MOST_SENTENCES, 'more sentence')} (all of them with --json)"
 
 
 def register(app: typer.Typer) -> None:

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from corpus_tools.cli.common import emit_json, progress_bar, say
-from corpus_tools.core import InputError, OutputError
+from corpus_tools.cli.common import PATH, emit_json, progress_bar, say
+from corpus_tools.core import InputError, OutputError, counted
 from corpus_tools.demo import LAYOUTS, N_SENTENCES, all_sentences, simulate_corpus, usual_voice
 from corpus_tools.io import find_recordings
 
@@ -16,7 +16,7 @@ __all__ = ["register"]
 
 
 def demo(
-    folder: Annotated[Path, typer.Argument(help="New folder for the simulated corpus.")],
+    folder: Annotated[Path, typer.Argument(**PATH, help="New folder for the simulated corpus.")],
     sentences: Annotated[
         int, typer.Option("--sentences", help="How many of the 2880 time sentences to record.")
     ] = N_SENTENCES,
@@ -37,7 +37,7 @@ def demo(
     with progress_bar("simulating") as progress:
         description = simulate_corpus(folder, sentences, seed, progress, layout=layout, voice=voice)
     n = len(find_recordings(description))
-    say(f"{folder}: {n} simulated recordings, spoken by {voice.summary}.")
+    say(f"{folder}: {counted(n, 'simulated recording')}, spoken by {voice.summary}.")
     say(f"Next: corpus-tools check {folder}, or: workbench {folder}")
     if json_:
         emit_json({"corpus": str(folder), "recordings": n, "simulated": True, "voice": voice.name})

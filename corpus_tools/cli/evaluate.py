@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 import corpus_tools
-from corpus_tools.cli.common import check_out_folder, emit_json, progress_bar, say
+from corpus_tools.cli.common import PATH, check_out_folder, emit_json, progress_bar, say
 from corpus_tools.core import InputError, Recording
 from corpus_tools.evaluate import (
     METRICS,
@@ -136,8 +136,10 @@ def _run(
 
 
 def evaluate_(
-    corpus: Annotated[Path, typer.Argument(help="Corpus folder, as 'corpus-tools init' made it.")],
-    out: Annotated[Path, typer.Option("--out", help="Folder for table.csv, sentences.csv, report.html, ...")],
+    corpus: Annotated[Path, typer.Argument(**PATH, help="Corpus folder, as 'corpus-tools init' made it.")],
+    out: Annotated[
+        Path, typer.Option("--out", **PATH, help="Folder for table.csv, sentences.csv, report.html, ...")
+    ],
     folds: Annotated[
         int | None, typer.Option("--folds", help=f"Parts, each held out once ({USUAL_FOLDS}).")
     ] = None,
@@ -146,7 +148,7 @@ def evaluate_(
     ] = False,
     test_corpus: Annotated[
         Path | None,
-        typer.Option("--test-corpus", help="Learn from CORPUS, test on this one."),
+        typer.Option("--test-corpus", **PATH, help="Learn from CORPUS, test on this one."),
     ] = None,
     methods: Annotated[
         str | None,

@@ -9,7 +9,7 @@ import numpy as np
 import typer
 
 from corpus_tools.cli.common import emit_json, say
-from corpus_tools.core import InputError
+from corpus_tools.core import InputError, counted
 from corpus_tools.demo import Cover, greedy_cover, load_grammar, pool_of
 
 __all__ = ["register"]
@@ -98,7 +98,8 @@ def cover(
         percent = 100 * row["covered"] / found.total
         say(f"{place:3d}  {percent:5.1f} %  +{len(row['adds']):<3d} {row['sentence']}")
         say(f"                     {' '.join(row['adds']) or 'nothing new'}")
-    say(f"{rows[-1]['covered']} of the {found.total} diphones of '{chosen.name}' in {len(rows)} sentences.")
+    total, sentences = counted(found.total, "diphone"), counted(len(rows), "sentence")
+    say(f"{rows[-1]['covered']} of {total} of the grammar '{chosen.name}' in {sentences}.")
 
 
 def register(app: typer.Typer) -> None:

@@ -8,16 +8,17 @@ from typing import Annotated, Any
 
 import typer
 
-from corpus_tools.cli.common import check_out_folder, emit_json, progress_bar, say
+from corpus_tools.cli.common import PATH, check_out_folder, emit_json, progress_bar, say
 from corpus_tools.cli.targets import SpeakRequest
 from corpus_tools.config import Config, ConfigBase, config_with, load_config
-from corpus_tools.core import NoUnitError, SynthesisError, Utterance
+from corpus_tools.core import NoUnitError, SynthesisError, Utterance, counted
 from corpus_tools.mesh import mesh_by_name_or_file
 from corpus_tools.methods import SEARCHES
 from corpus_tools.pipeline import (
     Head,
     OpenCorpus,
     Synthesis,
+    banned_pins,
     corpus_provenance,
     open_corpus,
     prepare_head,
@@ -31,10 +32,25 @@ from corpus_tools.synthesis import StandIn, stand_ins
 __all__ = ["register"]
 
 
-def _config(path: Path | None, changes: dict[str, Any]) -> ConfigBase:
+OPTIONS = {
+    "speech__language": "--lang",
+    "speech__engine": "--engine",
+    "speech__voice": "--voice",
+    "speech__rate": "--rate",
+    "selection__method": "--method",
+    "deform__mesh": "--mesh",
+    "alignment__rate_hz": "--fps",
+    "output__seed": "--seed",
+    "film__rate_hz": "--film-fps",
+}
+"""Values of a config that have an option of their own."""
+
+
+def _config(path: Path | None, typed: dict[str, Any]) -> ConfigBase:
     """Return the config of the command line: that of the file, with the options that were given."""
     config = load_config(path) if path else Config()
-    config = config_with(config, **{k: v for k, v in changes.items() if v is not None})
+    given = {key: typed[option] for key, option in OPTIONS.items() if typed[option] is not None}
+    config = config_with(config, options=OPTIONS, **given)
     SEARCHES[config.selection.method]
     return config
 
@@ -44,7 +60,8 @@ def _left_out(opened: OpenCorpus) -> str:
     if not opened.skipped:
         return ""
     names = ", ".join(list(opened.skipped)[:3]) + (", ..." if len(opened.skipped) > 3 else "")
-    return f"{len(opened.skipped)} recordings were left out ({names}); 'corpus-tools check' says why."
+    n = counted(len(opened.skipped), "recording was", "recordings were")
+    return f"{n} left out ({names}); 'corpus-tools check' says why."
 
 
 def _synthesise(
@@ -68,7 +85,7 @@ def _as_row(stand_in: StandIn) -> dict[str, Any]:
     }
 
 
-def _summary(synthesis: Synthesis, opened: OpenCorpus, out: Path) -> dict[str, Any]:
+def _summary(synthesis: Synthesis, opened: OpenCorpus, settings: ConfigBase, out: Path) -> dict[str, Any]:
     missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
     return {
         "out": str(out),
@@ -78,6 +95,7 @@ def _summary(synthesis: Synthesis, opened: OpenCorpus, out: Path) -> dict[str, A
         "fragments": [c.unit.key for c in synthesis.selection.chosen],
         "joins": synthesis.selection.n_joins,
         "cost": synthesis.selection.total_cost,
+        "banned_pins": banned_pins(settings),
         "missing_diphones": [_as_row(m) for m in missing],
         "timings_ms": {k: round(v, 2) for k, v in synthesis.timings_ms.items()},
         "left_out": opened.skipped,
@@ -88,12 +106,15 @@ def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus) -> 
     """Print for people what came out, and what they would not see at once."""
     fragments = summary["fragments"]
     say(
-        f"{summary['utterance']}: {summary['frames']} frames from {len(fragments)} fragments "
+        f"{summary['utterance']}: {counted(summary['frames'], 'frame')} "
+        f"from {counted(len(fragments), 'fragment')} "
         f"({', '.join(fragments)}) in {summary['out']}"
     )
     missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
     for sentence in dict.fromkeys(m.sentence for m in missing):
         say(f"▲ {sentence}")
+    for pin, ban in summary["banned_pins"]:
+        say(f"▲ The pin '{pin}' speaks what the ban '{ban}' forbids; the pin holds: take one of them out.")
     if summary["speech"]["silent"]:
         say("▲ There is no sound: speech.wav is silence; --audio FILE.wav gives the sound of the labels.")
     if opened.skipped:
@@ -101,16 +122,20 @@ def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus) -> 
 
 
 def synth(
-    corpus: Annotated[Path, typer.Argument(help="Corpus folder, as 'corpus-tools init' made it.")],
-    out: Annotated[Path, typer.Option("--out", help="Folder for motion.npz, mesh.npz, speech.wav, ...")],
+    corpus: Annotated[Path, typer.Argument(**PATH, help="Corpus folder, as 'corpus-tools init' made it.")],
+    out: Annotated[
+        Path, typer.Option("--out", **PATH, help="Folder for motion.npz, mesh.npz, speech.wav, ...")
+    ],
     text: Annotated[str | None, typer.Option("--text", help="Speak this text.")] = None,
     utterance: Annotated[
         str | None, typer.Option("--utterance", help="Speak this recording's sentence.")
     ] = None,
     labels: Annotated[
-        Path | None, typer.Option("--labels", help="Speak the timed phones of a TextGrid.")
+        Path | None, typer.Option("--labels", **PATH, help="Speak the timed phones of a TextGrid.")
     ] = None,
-    audio: Annotated[Path | None, typer.Option("--audio", help="Sound that goes with --labels.")] = None,
+    audio: Annotated[
+        Path | None, typer.Option("--audio", **PATH, help="Sound that goes with --labels.")
+    ] = None,
     lang: Annotated[
         str | None, typer.Option("--lang", help="Language of --text: en, en-gb, ...; the corpus's own.")
     ] = None,
@@ -123,7 +148,7 @@ def synth(
     ] = None,
     method: Annotated[str | None, typer.Option("--method", help="greedy or viterbi.")] = None,
     config: Annotated[
-        Path | None, typer.Option("--config", help="A config exported from the workbench.")
+        Path | None, typer.Option("--config", **PATH, help="A config exported from the workbench.")
     ] = None,
     mesh: Annotated[
         str | None, typer.Option("--mesh", help="A bundled head by name, or a mesh file.")
@@ -148,21 +173,9 @@ def synth(
     Example: corpus-tools synth WORK --utterance bbaf2n --method viterbi --out OUT
     """
     spoken = {"--lang": lang, "--engine": engine, "--voice": voice, "--rate": rate}
+    other = {"--method": method, "--mesh": mesh, "--fps": fps, "--seed": seed, "--film-fps": film_fps}
     asked = SpeakRequest(text, utterance, labels, audio, tuple(k for k, v in spoken.items() if v is not None))
-    settings = _config(
-        config,
-        {
-            "speech__language": lang,
-            "speech__engine": engine,
-            "speech__voice": voice,
-            "speech__rate": rate,
-            "selection__method": method,
-            "deform__mesh": mesh,
-            "alignment__rate_hz": fps,
-            "output__seed": seed,
-            "film__rate_hz": film_fps,
-        },
-    )
+    settings = _config(config, spoken | other)
     asked.check(settings)
     exports = export_names(export)
     check_out_folder(out, corpus)
@@ -189,7 +202,7 @@ def synth(
         )
         provenance = corpus_provenance(opened)
         write_synthesis(out, synthesis, head, settings, provenance, request, extra if exports else None)
-    summary = _summary(synthesis, opened, out)
+    summary = _summary(synthesis, opened, settings, out)
     _tell(summary, synthesis, opened)
     if json_:
         emit_json(summary)

@@ -66,7 +66,7 @@ def _shown(value: Any) -> str:
     return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."
 
 
-def _sentence(error: Mapping[str, Any], where: str) -> str:
+def _sentence(error: Mapping[str, Any], where: str, options: Mapping[str, str]) -> str:
     place = tuple(error["loc"])
     key = ".".join(str(p) for p in place)
     if error["type"] == "extra_forbidden":
@@ -74,11 +74,29 @@ def _sentence(error: Mapping[str, Any], where: str) -> str:
         hint = suggestion(str(place[-1]), known) or f"; known here: {', '.join(known)}."
         return f"{where}: unknown key '{key}'{hint}"
     what = str(error["msg"]).removeprefix("Value error, ")
-    return f"{where}: '{key}' is {_shown(error.get('input'))}: {what[0].lower()}{what[1:]}."
+    what = f"{what[0].lower()}{what[1:]}."
+    if key in options:
+        return f"{options[key]} {_typed(error.get('input'))}: {what.replace('input should', 'it should', 1)}"
+    return f"{where}: '{key}' is {_shown(error.get('input'))}: {what}"
 
 
-def config_from_dict(data: Mapping[str, Any], where: str = "config") -> ConfigBase:
+def _typed(value: Any) -> str:
+    """Return a wrong value as it was typed on a command line."""
+    return f"{value:g}" if isinstance(value, float) else _shown(value).strip("'\"")
+
+
+def config_from_dict(
+    data: Mapping[str, Any], where: str = "config", options: Mapping[str, str] | None = None
+) -> ConfigBase:
     """Make a config from plain data.
+
+    Parameters
+    ----------
+    data : mapping
+    where : str
+        What messages name as the place of a mistake.
+    options : mapping of "section.key" to str, optional
+        Values that came from options of a command line: messages name those instead.
 
     Raises
     ------
@@ -89,19 +107,31 @@ def config_from_dict(data: Mapping[str, Any], where: str = "config") -> ConfigBa
         return Config.model_validate(dict(data))
     except ValidationError as error:
         first, *others = error.errors(include_url=False)
-        sentence = _sentence(first, where)
+        sentence = _sentence(first, where, options or {})
         if others:
-            sentence = f"{sentence.rstrip('.?')}; {len(others)} more of its values are wrong."
+            wrong = "is" if len(others) == 1 else "are"
+            sentence = f"{sentence.rstrip('.?')}; {len(others)} more of its values {wrong} wrong."
         raise ConfigError(sentence) from None
 
 
-def config_with(config: ConfigBase, **changes: Any) -> ConfigBase:
-    """Return a copy with ``section__key=value`` changes applied and checked."""
+def config_with(
+    config: ConfigBase, *, options: Mapping[str, str] | None = None, **changes: Any
+) -> ConfigBase:
+    """Return a copy with ``section__key=value`` changes applied and checked.
+
+    Parameters
+    ----------
+    config : config
+    options : mapping of "section__key" to str, optional
+        The options of a command line that changes came from, such as "--fps": messages name those.
+    changes
+    """
     data = config.model_dump(by_alias=True, mode="json")
     for path, value in changes.items():
         name, _, key = path.partition("__")
         data[name] = {**data[name], key: value}
-    return config_from_dict(data)
+    typed = {key.replace("__", "."): option for key, option in (options or {}).items() if key in changes}
+    return config_from_dict(data, options=typed)
 
 
 def config_diff(before: ConfigBase, after: ConfigBase) -> list[tuple[str, Any, Any]]:

@@ -115,7 +115,9 @@ class OverrideSettings(Section):
     """A person's word against the search: what must and what must not be used."""
 
     pins: tuple[Annotated[str, Field(pattern=r"^\d+-\d+=.+:\d+-\d+$")], ...] = Field(
-        (), description="Target phones and the unit that must speak them: 'first-last=recording:i-j'."
+        (),
+        description="Target phones and the unit that must speak them: 'first-last=recording:i-j'; a pin "
+        "holds against a ban, and synth says so.",
     )
     bans: tuple[Annotated[str, Field(min_length=1)], ...] = Field(
         (), description="Units ('recording:i-j') or whole recordings that must not be used."

@@ -25,6 +25,7 @@ from corpus_tools.core.registry import Registry
 from corpus_tools.core.selection import Candidate, ChosenUnit, Costs, Selection, UnitRef
 from corpus_tools.core.trajectory import Join, Trajectory
 from corpus_tools.core.utterance import Recording, Utterance
+from corpus_tools.core.words import counted
 
 __all__ = [
     "Audio",
@@ -68,6 +69,7 @@ __all__ = [
     "atomic_file",
     "atomic_folder",
     "check_writable",
+    "counted",
     "frozen",
     "step",
 ]

@@ -21,6 +21,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+from corpus_tools.core.words import counted
+
 __all__ = [
     "ConfigError",
     "CorpusError",
@@ -36,6 +38,10 @@ __all__ = [
     "WorkbenchError",
     "suggestion",
 ]
+
+
+MOST_NAMED = 8
+"""Missing diphones that a sentence names (our choice); the error carries all of them."""
 
 
 class WorkbenchError(Exception):
@@ -91,11 +97,30 @@ class NoUnitError(SynthesisError):
         The diphones that no unit covers.
     by_class : bool
         Viseme classes were tried too.
+    banned, held_out : bool
+        Units would cover them all if no unit were banned, or no recording held out.
     """
 
-    def __init__(self, diphones: Iterable[tuple[str, str]], by_class: bool = True) -> None:
+    def __init__(
+        self,
+        diphones: Iterable[tuple[str, str]],
+        by_class: bool = True,
+        banned: bool = False,
+        held_out: bool = False,
+    ) -> None:
         self.diphones = tuple(diphones)
-        names = ", ".join(f"{a}-{b}" for a, b in self.diphones)
+        names = ", ".join(f"{a}-{b}" for a, b in self.diphones[:MOST_NAMED])
+        if len(self.diphones) > MOST_NAMED:
+            names += f" and {counted(len(self.diphones) - MOST_NAMED, 'more diphone')}"
+        if banned or held_out:
+            why, advice = (
+                ("banned", "lift a ban")
+                if banned
+                else ("held out", "record it in another sentence, or let the held-out recording be used")
+            )
+            other = "" if by_class else ", or allow backoff to viseme classes"
+            super().__init__(f"No unit may speak {names}: those that could are {why}; {advice}{other}.")
+            return
         tried, advice = (
             (", not even by viseme class", "a wider backoff")
             if by_class

@@ -15,11 +15,15 @@ from corpus_tools.core.errors import OutputError
 __all__ = ["atomic_file", "atomic_folder", "check_writable"]
 
 
-_FULL = {getattr(errno, name, None) for name in ("ENOSPC", "EDQUOT")}
+_FULL = {
+    getattr(errno, "ENOSPC", None): "free space there, or choose another disk",
+    getattr(errno, "EDQUOT", None): "free space there, or choose another disk",
+    getattr(errno, "EFBIG", None): "raise the limit on the size of files, or choose another disk",
+}
 
 
 def _advice(error: OSError, place: str) -> str:
-    return "free space there, or choose another disk" if error.errno in _FULL else f"choose a {place}"
+    return _FULL.get(error.errno) or f"choose a {place}"
 
 
 def _refusal(path: Path, error: OSError) -> OutputError:

@@ -2,6 +2,7 @@
 
 from corpus_tools.io.corpus import (
     RecordingFiles,
+    check_word_tier,
     find_recordings,
     init_corpus,
     load_audio,
@@ -45,6 +46,7 @@ __all__ = [
     "MOTION_WRITERS",
     "CorpusDescription",
     "RecordingFiles",
+    "check_word_tier",
     "content_hash",
     "description_from_dict",
     "file_hash",

@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
+import contextlib
 import glob
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from corpus_tools.core import Audio, Capture, CorpusError, LabelError, Labels, MotionError
+from corpus_tools.core import (
+    Audio,
+    Capture,
+    CorpusError,
+    InputError,
+    LabelError,
+    Labels,
+    MotionError,
+    counted,
+)
 from corpus_tools.core.errors import suggestion
 from corpus_tools.io.description import (
     CORPUS_FILE,
+    DEFAULT_WORD_TIER,
     CorpusDescription,
     description_from_dict,
     parsed_axes,
@@ -23,7 +34,19 @@ from corpus_tools.io.description import (
 )
 from corpus_tools.io.formats import read_audio, read_labels, read_markers
 
-__all__ = ["RecordingFiles", "find_recordings", "init_corpus", "load_audio", "load_capture", "load_labels"]
+__all__ = [
+    "RecordingFiles",
+    "check_word_tier",
+    "find_recordings",
+    "init_corpus",
+    "load_audio",
+    "load_capture",
+    "load_labels",
+]
+
+MOST_LOOKED_AT = 20
+"""Label files that `init` reads to see whether the tiers it was told are there (our choice: at once)."""
+
 
 FARTHEST_MM = 1e6
 """No face is captured a kilometre from the origin (our choice): such numbers are another unit, or damage."""
@@ -220,7 +243,7 @@ def init_corpus(
     Raises
     ------
     CorpusError
-        There is a corpus already, a key or value is unknown, or the motion pattern matches nothing.
+        There is a corpus already, a key or value is unknown, or a pattern or a tier matches nothing.
     """
     place = Path(folder)
     if os.path.exists(place / CORPUS_FILE) and not force:  # noqa: PTH110 - as above
@@ -238,5 +261,55 @@ def init_corpus(
             f"corpus-tools init: --motion '{motion}' matches no file: looked for '{pattern}', "
             "where {id} stands for a recording's name; check the path."
         )
+    _check_files(description, {"audio": audio, "labels": labels})
     write_description(description)
     return description
+
+
+def _check_files(description: CorpusDescription, typed: Mapping[str, str | None]) -> None:
+    """Refuse patterns and tiers that no recording has anything for, before anything is written."""
+    found = find_recordings(description)
+    for what, pattern in typed.items():
+        if pattern and not any(getattr(files, what) for files in found):
+            looked = str(_absolute(description, getattr(description, what))).replace("{id}", found[0].id)
+            raise CorpusError(
+                f"corpus-tools init: --{what} '{pattern}' matches no file: looked for '{looked}', and so on "
+                f"for {counted(len(found), 'recording')} of --motion; check the path, or leave --{what} out."
+            )
+    labelled = []
+    for files in [f for f in found if f.labels][:MOST_LOOKED_AT]:
+        with contextlib.suppress(InputError):  # `check` names the damaged ones
+            labelled.append(load_labels(description, files))
+    check_word_tier(description, labelled, "corpus-tools init")
+    phone_tier = description.phone_tier
+    if labelled and not any(phone_tier in labels.names for labels in labelled):
+        raise CorpusError(
+            f"corpus-tools init: no label file has the tier '{phone_tier}'; they have {_tiers(labelled)}: "
+            "name that of the phones with --set phone_tier=NAME."
+        )
+
+
+def _tiers(labels: Iterable[Labels]) -> str:
+    return (
+        ", ".join(repr(name) for name in dict.fromkeys(n for found in labels for n in found.names)) or "none"
+    )
+
+
+def check_word_tier(
+    description: CorpusDescription, labels: Sequence[Labels], where: str | None = None
+) -> None:
+    """Refuse a word tier that somebody named and no labels have; the usual one may be missing.
+
+    Raises
+    ------
+    CorpusError
+        The message names the tiers that there are.
+    """
+    wanted = description.word_tier
+    if not wanted or wanted == DEFAULT_WORD_TIER or not labels:
+        return
+    if not any(wanted in found.names for found in labels):
+        raise CorpusError(
+            f"{where or repr(str(description.file))}: no label file has the tier word_tier = '{wanted}'; "
+            f"they have {_tiers(labels)}: name that of the words, or leave it empty ('')."
+        )

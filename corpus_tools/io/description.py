@@ -18,6 +18,7 @@ from corpus_tools.io.motion_parts import mm_per
 
 __all__ = [
     "CORPUS_FILE",
+    "DEFAULT_WORD_TIER",
     "SCHEMA",
     "CorpusDescription",
     "description_from_dict",
@@ -28,6 +29,8 @@ __all__ = [
 
 CORPUS_FILE = "corpus.toml"
 SCHEMA = 1
+DEFAULT_WORD_TIER = "words"
+"""The only word tier that labels may lack: nobody has to have words."""
 FASTEST_HZ = 1e5
 LONGEST_OFFSET_S = 3600.0
 
@@ -85,7 +88,7 @@ class CorpusDescription:
     rate_hz: float = 0.0
     reference_markers: str = "head*"
     phone_tier: str = "phones"
-    word_tier: str = "words"
+    word_tier: str = DEFAULT_WORD_TIER
     audio_offset_s: float = 0.0
     exclude: tuple[str, ...] = ()
     schema: int = SCHEMA

@@ -51,6 +51,8 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
         The file is missing, cut, of another kind, or names vertices it does not have.
     """
     file = Path(path)
+    if file.is_dir():
+        raise MeshError(f"'{file}' is a folder, and an .npz or .obj file was expected; name a mesh in it.")
     if not file.is_file():
         raise MeshError(f"There is no mesh file '{file}'; check the path.")
     readers = {".npz": _read_npz, ".obj": _read_obj}

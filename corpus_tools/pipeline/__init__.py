@@ -4,7 +4,7 @@ from corpus_tools.pipeline.head import Animation, Head, animate, prepare_head, v
 from corpus_tools.pipeline.health import check_corpus, health_lines
 from corpus_tools.pipeline.opened import OpenCorpus, open_corpus
 from corpus_tools.pipeline.outputs import write_motion, write_synthesis
-from corpus_tools.pipeline.overrides import ban_of, overrides_of, parse_pin, pin_text
+from corpus_tools.pipeline.overrides import ban_of, banned_pins, overrides_of, parse_pin, pin_text
 from corpus_tools.pipeline.provenance import code_hash, corpus_provenance, library_versions
 from corpus_tools.pipeline.reading import (
     Progress,
@@ -35,6 +35,7 @@ __all__ = [
     "align_units",
     "animate",
     "ban_of",
+    "banned_pins",
     "blend_units",
     "check_corpus",
     "check_speech",

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from corpus_tools.cleaning import CleanedCorpus, clean_captures, gaps, remove_head_motion
-from corpus_tools.core import Capture, CorpusError, Labels, Utterance, WorkbenchError
+from corpus_tools.core import Capture, CorpusError, Labels, Utterance, WorkbenchError, counted
 from corpus_tools.fragments.posture import bias_rms_mm, posture_offsets_mm
 from corpus_tools.io import (
     CorpusDescription,
     RecordingFiles,
+    check_word_tier,
     find_recordings,
     load_capture,
     load_labels,
@@ -109,12 +110,12 @@ def _check_gaps(entry: _Entry) -> None:
     found = gaps(entry.capture)
     if found:
         ranges = ", ".join(f"{a}-{b}" if b > a else f"{a}" for a, b in found[:6])
-        more = f" and {len(found) - 6} more" if len(found) > 6 else ""
+        more = f" and {counted(len(found) - 6, 'more gap')}" if len(found) > 6 else ""
         entry.problems.append(f"markers missing in frames {ranges}{more}.")
     keep, regions = seen_markers([entry.capture]), entry.capture.regions
     never = [n for i, n in enumerate(entry.capture.names) if i not in keep and regions[i] != "head"]
     if 0 < len(never) < len(entry.capture.names) - regions.count("head"):
-        more = f" and {len(never) - 6} more" if len(never) > 6 else ""
+        more = f" and {counted(len(never) - 6, 'more marker')}" if len(never) > 6 else ""
         entry.problems.append(f"no frame shows {', '.join(never[:6])}{more}.")
 
 
@@ -236,6 +237,7 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
         _check_gaps(entry)
     _check_alike(entries)
     progress(0.75, "head motion and lip closures")
+    check_word_tier(description, [e.labels for e in entries if e.labels is not None])
     told = [*what_is_lacking(description), *what_is_left_out(description, [f.id for f in files])]
     try:
         advice = _advice(description, _usable(description, entries, phones), phones)
@@ -261,8 +263,9 @@ def health_lines(report: dict[str, Any]) -> list[str]:
     """Return the report of :func:`check_corpus` as lines for people, worst first."""
     s = report["summary"]
     lines = [
-        f"{report['corpus']}: {s['recordings']} recordings, {s['duration_s'] / 60:.1f} min, {s['labelled']} "
-        f"labelled, {s['with_gaps']} with gaps, {s['with_problems']} with something to look at."
+        f"{report['corpus']}: {counted(s['recordings'], 'recording')}, {s['duration_s'] / 60:.1f} min, "
+        f"{s['labelled']} labelled, {s['with_gaps']} with gaps, "
+        f"{s['with_problems']} with something to look at."
     ]
     if "head_scale_sd" in report:
         lines.append(

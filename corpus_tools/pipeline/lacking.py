@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from corpus_tools.core import Capture, CorpusError
+from corpus_tools.core import Capture, CorpusError, counted
 from corpus_tools.core.errors import suggestion
 from corpus_tools.io import CorpusDescription, parsed_axes
 
@@ -35,9 +35,8 @@ def what_is_left_out(description: CorpusDescription, ids: Collection[str]) -> li
     left_out = set(description.exclude) & set(ids)
     told = []
     if left_out:
-        told.append(
-            f"'exclude' in '{description.file}' leaves out {len(left_out)} of the {len(ids)} recordings."
-        )
+        all_of_them = counted(len(ids), "recording")
+        told.append(f"'exclude' in '{description.file}' leaves out {len(left_out)} of {all_of_them}.")
     for name in sorted(set(description.exclude) - left_out):
         hint = suggestion(name, ids) or "; give the names of recordings."
         told.append(f"'exclude' in '{description.file}' names '{name}', which is no recording{hint}")

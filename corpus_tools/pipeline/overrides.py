@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 
 from corpus_tools.config import ConfigBase
 from corpus_tools.core import InputError, UnitRef
 
-__all__ = ["ban_of", "overrides_of", "parse_pin", "pin_text"]
+__all__ = ["ban_of", "banned_pins", "overrides_of", "parse_pin", "pin_text"]
 
 _UNIT = re.compile(r"(.+):(\d+)-(\d+)")
 _PIN = re.compile(r"(\d+)-(\d+)=(.+)")
@@ -44,6 +45,20 @@ def parse_pin(text: str) -> tuple[int, int, UnitRef]:
 def ban_of(text: str) -> UnitRef | str:
     """Return what a ban names: a unit (``recording:i-j``), or a whole recording."""
     return _unit(text) or text
+
+
+def banned_pins(config: ConfigBase) -> tuple[tuple[str, str], ...]:
+    """Return (pin, ban) of every pin whose unit is banned, wholly or in part: such a pin holds."""
+    found = []
+    for pin, text in itertools.product(config.overrides.pins, config.overrides.bans):
+        unit, ban = parse_pin(pin)[2], ban_of(text)
+        if isinstance(ban, str):
+            against = ban == unit.recording
+        else:
+            against = ban.recording == unit.recording and ban.first < unit.last and unit.first < ban.last
+        if against:
+            found.append((pin, text))
+    return tuple(found)
 
 
 def overrides_of(

@@ -13,6 +13,7 @@ from corpus_tools.core import Capture, CorpusError, Recording, Utterance, Workbe
 from corpus_tools.io import (
     CorpusDescription,
     RecordingFiles,
+    check_word_tier,
     find_recordings,
     load_capture,
     load_labels,
@@ -93,12 +94,13 @@ def face_only(capture: Capture) -> Capture:
 def _load(
     description: CorpusDescription, files: Sequence[RecordingFiles], phones: PhoneSet, progress: Progress
 ) -> tuple[list[tuple[Capture, Utterance]], dict[str, str]]:
-    loaded, skipped = [], {}
+    loaded, skipped, tiers = [], {}, []
     for index, item in enumerate(files):
         progress(index / len(files), f"reading {item.id}")
         try:
             capture = load_capture(description, item)
             labels = load_labels(description, item)
+            tiers.append(labels)
             utterance = recorded_utterance(
                 item.id,
                 labels,
@@ -112,6 +114,7 @@ def _load(
             skipped[item.id] = str(error)
             continue
         loaded.append((capture, utterance))
+    check_word_tier(description, tiers)
     return loaded, skipped
 
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import shutil
+import signal
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -24,23 +27,42 @@ COLOURS = ("-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "b
 EXACT = ("-fflags", "+bitexact", "-flags:v", "+bitexact", "-flags:a", "+bitexact", "-map_metadata", "-1")
 
 
+_CHOICE = "IMAGEIO_FFMPEG_EXE"
+_WITHOUT = "(the export 'frames' works without)"
+_SPACE = "free space there, choose another disk, or raise the limit on the size of files"
+_FULL = ("No space left", "File too large", "Disk quota")
+
+
 def ffmpeg_path() -> str:
     """Return the path of the ffmpeg program that comes with the extra ``video``.
 
     Raises
     ------
     MissingExtraError
-        It is not installed.
+        It is not installed, or the program is not where the extra says.
     """
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
-
-        return str(get_ffmpeg_exe())
-    except (ImportError, RuntimeError) as error:
+    except ImportError as error:
         raise MissingExtraError(
             "A film needs the extra 'video', which is not installed: "
-            "pip install 'visual-speech-workbench[video]' (the export 'frames' works without)."
+            f"pip install 'visual-speech-workbench[video]' {_WITHOUT}."
         ) from error
+    chosen = os.environ.get(_CHOICE)
+    try:
+        path = str(get_ffmpeg_exe())
+    except RuntimeError:
+        path = ""
+    if path and shutil.which(path):
+        return path
+    if chosen:
+        raise MissingExtraError(
+            f"{_CHOICE} names '{chosen}', which is no program to be run; correct or unset it {_WITHOUT}."
+        )
+    raise MissingExtraError(
+        "The extra 'video' is installed without the program ffmpeg: "
+        f"pip install --force-reinstall imageio-ffmpeg {_WITHOUT}."
+    )
 
 
 def _command(path: Path, size: tuple[int, int], rate_hz: float, sound: Path, duration_s: float) -> list[str]:
@@ -85,10 +107,19 @@ class Encoder:
         said = [
             line.strip() for line in self.errors.read().decode(errors="replace").splitlines() if line.strip()
         ]
-        reason = said[-1].rstrip(".") if said else f"it ended with code {self.child.returncode}"
-        return OutputError(
-            f"ffmpeg could not write the film: {reason}; check the space on the disk and try again."
-        )
+        full = next((line for line in said if any(sign in line for sign in _FULL)), "")
+        code = self.child.returncode or 0
+        if full or code == -getattr(signal, "SIGXFSZ", 0):
+            reason = full.rstrip(".").rpartition(": ")[2] or "File too large"
+            return OutputError(f"ffmpeg could not write the film: {reason}; {_SPACE}.")
+        if code < 0:
+            name = signal.Signals(-code).name if -code in set(signal.Signals) else f"signal {-code}"
+            return OutputError(
+                f"ffmpeg was ended by {name} before the film was whole; try again, with a smaller film.width "
+                f"and film.height in a config if the memory is short {_WITHOUT}."
+            )
+        reason = said[-1].rstrip(".") if said else f"it ended with code {code}"
+        return OutputError(f"ffmpeg could not write the film: {reason}; try again {_WITHOUT}.")
 
 
 @contextlib.contextmanager

@@ -88,14 +88,31 @@ def find_candidates(
         rows[k] = _class_rows(model, target, k, usable, banned)
     lost = [k for k in missing if len(rows[k]) == 0 and k not in pinned]
     if lost:
-        names = dict.fromkeys((target.labels[k], target.labels[k + 1]) for k in lost)
-        raise NoUnitError(names, by_class=allow_backoff)
+        raise _no_unit(model, target, lost, excluded, allow_backoff)
     reach = run_lengths(rows, model.inventory.n_phones)
     if not pinned:
         return Candidates(tuple(rows), tuple(reach), tuple(rows), tuple(reach))
     fixed = [pinned.get(k, found) for k, found in enumerate(rows)]
     fixed_reach = run_lengths(fixed, model.inventory.n_phones)
     return Candidates(tuple(fixed), tuple(fixed_reach), tuple(rows), tuple(reach))
+
+
+def _no_unit(
+    model: SelectionModel, target: Target, lost: Sequence[int], excluded: frozenset[str], by_class: bool
+) -> NoUnitError:
+    """Return the error for diphones without a row, with what keeps them from having one."""
+    none = np.zeros(0, dtype=np.int64)
+
+    def covered(usable: BoolArray) -> bool:
+        found = diphone_rows(model.inventory, diphone_keys(model.inventory, target.codes)[list(lost)])
+        if by_class:
+            found = [_class_rows(model, target, k, usable, none) for k in lost]
+        return all(len(_keep(model, rows, usable, none)) for rows in found)
+
+    banned = covered(recording_mask(model.inventory, excluded))
+    held_out = not banned and covered(recording_mask(model.inventory, ()))
+    names = dict.fromkeys((target.labels[k], target.labels[k + 1]) for k in lost)
+    return NoUnitError(names, by_class=by_class, banned=banned, held_out=held_out)
 
 
 def run_lengths(rows: Sequence[IntArray], n_phones: int) -> list[IntArray]:

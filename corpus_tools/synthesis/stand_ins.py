@@ -35,8 +35,8 @@ class StandIn:
 
     @property
     def sentence(self) -> str:
-        """What a reader is told: "No unit has B-UW: P-UW stood in", and what is seen to differ."""
-        told = f"No unit has {'-'.join(self.diphone)}: {'-'.join(self.used)} stood in"
+        """What a reader is told: "No usable unit has B-UW: P-UW stood in", and what is seen to differ."""
+        told = f"No usable unit has {'-'.join(self.diphone)}: {'-'.join(self.used)} stood in"
         return f"{told}; {self.differs}" if self.differs else told
 
 

@@ -56,7 +56,7 @@ def test_cover_tells_what_each_sentence_adds_and_the_coverage(tool, mine):
     assert len(rows) == 12
     shares = [float(row.split()[1]) for row in rows[::2]]
     assert shares == sorted(shares)
-    assert last.endswith("of 'time' in 6 sentences.")
+    assert last.endswith("of the grammar 'time' in 6 sentences.")
 
 
 @pytest.mark.parametrize(

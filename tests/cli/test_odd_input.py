@@ -131,7 +131,7 @@ def test_one_damaged_recording_is_left_out_and_named(tool, corpus, tmp_path):
         code, out, err = tool(*args)
         assert (code, err) == (0, "")
         assert list(last_json(out)["left_out"]) == [first.id]
-        assert f"1 recordings were left out ({first.id})" in out
+        assert f"1 recording was left out ({first.id})" in out
         code, out, _ = tool("check", corpus, "--json")
         row = next(r for r in last_json(out)["recordings"] if r["id"] == first.id)
         assert code == 0
@@ -143,7 +143,7 @@ def test_a_missing_unit_says_that_recordings_were_left_out(tool, corpus, tmp_pat
     for files in others:
         files.audio.write_bytes(b"no sound")
     answer = tool("synth", corpus, "--utterance", first.id, "--out", tmp_path / "o")
-    refused(answer, "No unit", "3 recordings were left out", "corpus-tools check")
+    refused(answer, "No unit", "are held out", "3 recordings were left out", "corpus-tools check")
 
 
 def test_a_marker_that_no_recording_shows_is_left_out(tool, corpus, tmp_path):

@@ -108,7 +108,7 @@ def test_diphones_that_are_missing_are_told_with_what_stood_in(tool, corpus, tmp
     assert {"B-OY", "JH-OY"} <= {m["diphone"] for m in missing}
     for row in missing:
         assert row["diphone"] != row["stood_in"]
-        assert f"▲ No unit has {row['diphone']}: {row['stood_in']} stood in" in out
+        assert f"▲ No usable unit has {row['diphone']}: {row['stood_in']} stood in" in out
         assert row["unit"] in last_json(out)["fragments"]
     assert out.count("▲") == len({(m["diphone"], m["stood_in"]) for m in missing})
 
@@ -173,9 +173,9 @@ LABELS = ("--labels", "L.TextGrid")
         (("--text", "now", "--voice", "f22"), ("f22", "did you mean 'f2'")),
         (("--text", "now", "--lang", "xx"), ("'xx'", "phones of en")),
         (("--text", "hola", "--lang", "es-419"), ("es-419", "arpabet", "phones of en")),
-        (("--text", "now", "--rate", "0"), ("speech.rate",)),
-        (("--text", "now", "--rate", "nan"), ("speech.rate",)),
-        (("--text", "now", "--rate", "99"), ("speech.rate", "2.5")),
+        (("--text", "now", "--rate", "0"), ("--rate 0",)),
+        (("--text", "now", "--rate", "nan"), ("--rate nan",)),
+        (("--text", "now", "--rate", "99"), ("--rate 99", "2.5")),
         (("--text", ""), ("empty",)),
         (("--text", "..."), ("'...'", "no word")),
         (("--text", " ?! -- "), ("no word",)),

@@ -89,5 +89,5 @@ def test_what_exclude_leaves_out_is_told_and_a_name_that_is_none(tmp_path):
     description = read_description(folder)
     write_description(dataclasses.replace(description, exclude=("a b", "a c")))
     told = check_corpus(folder)["told"]
-    assert any("leaves out 1 of the 1 recordings" in line for line in told)
+    assert any("leaves out 1 of 1 recording." in line for line in told)
     assert any("'a c', which is no recording; did you mean 'a b'?" in line for line in told)

@@ -10,7 +10,7 @@ import pytest
 from corpus_tools.cli.common import guarded
 from corpus_tools.cli.main import app
 from corpus_tools.config import Config, config_with
-from corpus_tools.core import InputError
+from corpus_tools.core import InputError, OutputError
 from corpus_tools.io import MOTION_WRITERS, read_markers
 from corpus_tools.pipeline import prepare_head, synthesise, write_synthesis
 from corpus_tools.render import EXPORTERS, export_all, export_names, probe, probe_offscreen
@@ -38,6 +38,32 @@ def write(folder, made, names):
 
     write_synthesis(folder, synthesis, head, SMALL, {}, {}, exports)
     return seen
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no limits on the size of files")
+@pytest.mark.parametrize("name", list(EXPORTERS))
+def test_a_disk_that_takes_no_more_in_the_middle_of_an_export_leaves_nothing(made, tmp_path, name):
+    """Files may grow to 600 bytes once the export begins: a real error of the system."""
+    import resource
+
+    synthesis, head = made
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+
+    def exports(out):
+        assert (out / "speech.wav").exists()
+        resource.setrlimit(resource.RLIMIT_FSIZE, (600, hard))
+        return export_all([name], out, synthesis, head, SMALL)
+
+    (tmp_path / "o").mkdir()
+    (tmp_path / "o/motion.npz").write_text("old")
+    try:
+        with pytest.raises(OutputError, match=r"File too large; .*limit on the size of files") as caught:
+            write_synthesis(tmp_path / "o", synthesis, head, SMALL, {}, {}, exports)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert len(str(caught.value).splitlines()) == 1
+    assert [p.relative_to(tmp_path).as_posix() for p in sorted(tmp_path.rglob("*"))] == ["o", "o/motion.npz"]
+    assert (tmp_path / "o/motion.npz").read_text() == "old"
 
 
 @pytest.mark.parametrize("name", list(EXPORTERS))

@@ -164,6 +164,16 @@ def test_without_the_extra_the_sentence_names_it(monkeypatch):
         ffmpeg_path()
 
 
+def test_a_program_that_is_not_there_is_not_called_a_missing_extra(tmp_path, monkeypatch):
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "none"))
+    with pytest.raises(MissingExtraError, match=r"IMAGEIO_FFMPEG_EXE names '.*none'.*unset it"):
+        ffmpeg_path()
+    monkeypatch.delenv("IMAGEIO_FFMPEG_EXE")
+    monkeypatch.setattr("imageio_ffmpeg.get_ffmpeg_exe", lambda: str(tmp_path / "gone"))
+    with pytest.raises(MissingExtraError, match="without the program ffmpeg: pip install --force-reinstall"):
+        ffmpeg_path()
+
+
 def test_the_child_ends_when_we_are_stopped(tmp_path, spoken):
     write_wav(tmp_path / "s.wav", spoken.utterance.audio)
     with (
@@ -175,9 +185,21 @@ def test_the_child_ends_when_we_are_stopped(tmp_path, spoken):
     assert e.child.returncode is not None
 
 
+def test_a_killed_ffmpeg_is_not_called_a_full_disk(tmp_path, spoken):
+    write_wav(tmp_path / "s.wav", spoken.utterance.audio)
+    with (
+        pytest.raises(OutputError, match=r"ended by SIGKILL before the film was whole; try again") as caught,
+        encoding(tmp_path / "f.mp4", (16, 16), 30.0, tmp_path / "s.wav", 1.0) as e,
+    ):
+        e.child.kill()
+        for _ in range(2000):
+            e.add(np.zeros((16, 16, 3), np.uint8))
+    assert "disk" not in str(caught.value)
+
+
 def test_what_ffmpeg_says_becomes_one_sentence(tmp_path):
     with (
-        pytest.raises(OutputError, match=r"ffmpeg could not write the film: .*No such file[^.]*; check"),
+        pytest.raises(OutputError, match=r"ffmpeg could not write the film: .*No such file[^.]*; try again"),
         encoding(tmp_path / "f.mp4", (16, 16), 30.0, tmp_path / "none.wav", 1.0) as e,
     ):
         for _ in range(2000):

@@ -80,6 +80,28 @@ def test_where_nothing_stands_in_all_missing_diphones_are_named(search):
         search(model, utterance("t", ["SIL", "T", "SIL"]), allow_backoff=False)
 
 
+@pytest.mark.parametrize("search", SEARCHES)
+def test_what_is_banned_or_held_out_is_not_called_missing(search):
+    model = model_of(recording("a", ["SIL", "P", "A", "SIL"]), recording("b", ["SIL", "P", "SIL"]))
+    target = utterance("t", ["SIL", "P", "A", "SIL"])
+    for backoff, other in ((True, ""), (False, ", or allow backoff to viseme classes")):
+        every = [UnitRef("a", 0, 3), "b"]
+        with pytest.raises(NoUnitError, match=rf"those that could are banned; lift a ban{other}\.$"):
+            search(model, target, bans=every, allow_backoff=backoff)
+        with pytest.raises(
+            NoUnitError, match=rf"are held out; .*let the held-out recording be used{other}\.$"
+        ):
+            search(model, target, exclude=["a", "b"], allow_backoff=backoff)
+    with pytest.raises(NoUnitError, match="record a sentence that holds it"):
+        search(model, utterance("t", ["SIL", "T", "SIL"]), bans=["a"], allow_backoff=False)
+
+
+def test_a_sentence_names_the_first_missing_diphones_and_counts_the_others():
+    error = NoUnitError([("P", str(k)) for k in range(20)])
+    assert "P-7 and 12 more diphones, not even" in str(error)
+    assert len(error.diphones) == 20
+
+
 def test_filled_frames_inside_a_unit_cost_by_their_share_and_are_avoided():
     phones, durations = ["SIL", "P", "A", "SIL"], [0.11] * 4
     spoken = utterance("a", phones, durations)

@@ -31,8 +31,8 @@ def test_a_stand_in_names_what_was_wanted_and_what_was_used():
     selection = Selection("x", "viterbi", (chosen(0, 2, (1, "B", "P")), chosen(2, 4)))
     found = stand_ins(selection, utterance(), ARPABET)
     assert [f.sentence for f in found] == [
-        "No unit has SIL-B: SIL-P stood in",
-        "No unit has B-UW: P-UW stood in",
+        "No usable unit has SIL-B: SIL-P stood in",
+        "No usable unit has B-UW: P-UW stood in",
     ]
     assert [round(f.time_s, 6) for f in found] == [0.1, 0.2]
     assert {f.source for f in found} == {"r:3-5"}
@@ -54,7 +54,10 @@ def test_lips_and_visemes_that_differ_are_told(used, told):
     found = stand_ins(Selection("x", "viterbi", (chosen(0, 4, *used),)), utterance(), ARPABET)
     assert len(found) == 2
     for item in found:
-        assert item.sentence == f"No unit has {'-'.join(item.diphone)}: {'-'.join(item.used)} stood in{told}"
+        assert (
+            item.sentence
+            == f"No usable unit has {'-'.join(item.diphone)}: {'-'.join(item.used)} stood in{told}"
+        )
 
 
 @given(st.sets(st.integers(0, 4)))

@@ -9,6 +9,7 @@ from typing import Any
 
 import panel as pn
 
+from corpus_tools.core import counted
 from workbench.actions import CorpusCache, Desk, Gate, ban_unit, heard, suggested_path, swap_unit, toggle_pin
 from workbench.state import Session
 from workbench.views.bar import AppBar
@@ -212,7 +213,7 @@ class BlendPage:
         left = "No corpus open"
         if s.corpus is not None:
             skipped = len(s.corpus.skipped)
-            left = f"✓ {s.corpus.description.name}: {len(s.corpus.names)} recordings"
+            left = f"✓ {s.corpus.description.name}: {counted(len(s.corpus.names), 'recording')}"
             left += f", ▲ {skipped} left out" if skipped else ""
         measured = ""
         if s.result is not None and s.result.ran:

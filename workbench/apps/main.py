@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperCommand
 
 import corpus_tools
-from corpus_tools.cli.common import OneSentence, guarded, say
+from corpus_tools.cli.common import PATH, OneSentence, guarded, say
 from corpus_tools.core import InputError
 
 __all__ = ["APPS", "app", "run"]
@@ -41,7 +41,7 @@ class _Command(OneSentence, TyperCommand):
 @app.command(cls=_Command)
 def workbench(
     corpus: Annotated[
-        Path | None, typer.Argument(help="Corpus folder; the simulated starter corpus when left out.")
+        Path | None, typer.Argument(**PATH, help="Corpus folder; the simulated starter corpus when left out.")
     ] = None,
     app_name: Annotated[
         str, typer.Option("--app", help=f"Dashboard to begin with: {', '.join(APPS)}.")
@@ -50,13 +50,13 @@ def workbench(
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Do not open the browser.")] = False,
     host: Annotated[str, typer.Option("--host", help="Address to listen on.")] = "127.0.0.1",
     password_file: Annotated[
-        Path | None, typer.Option("--password-file", help="File whose first line is the password.")
+        Path | None, typer.Option("--password-file", **PATH, help="File whose first line is the password.")
     ] = None,
     origin: Annotated[
         list[str] | None, typer.Option("--origin", help="HOST:PORT the page may be asked from; repeatable.")
     ] = None,
     root: Annotated[
-        Path | None, typer.Option("--root", help="Folder that corpora and exports must lie in.")
+        Path | None, typer.Option("--root", **PATH, help="Folder that corpora and exports must lie in.")
     ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Start on a free port, wait for the page and a corpus, stop.")

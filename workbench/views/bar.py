@@ -8,6 +8,7 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from corpus_tools.core import counted
 from workbench.state import Session
 from workbench.views.controls import Controls, button, preset_buttons
 
@@ -109,7 +110,7 @@ class AppBar(pn.viewable.Viewer):
         if corpus is None:
             self.corpus.label = "Open a corpus"
             return
-        self.corpus.label = f"{corpus.description.name} · {len(corpus.names)} recordings ▾"
+        self.corpus.label = f"{corpus.description.name} · {counted(len(corpus.names), 'recording')} ▾"
         self.sentence.param.update(options=sentence_options(self._session), value=self._session.sentence)
 
     def __panel__(self) -> Any:

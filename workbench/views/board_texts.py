@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from corpus_tools.core import counted
 from workbench.state import Effects, Result, missing_of, stand_ins
 
 __all__ = ["head_text", "lower_text", "missing_text"]
@@ -19,7 +20,7 @@ def missing_text(result: Result) -> str:
     if not stood:
         return ""
     gone = ", ".join(f"{a}-{b}" for a, b in missing_of(result)) or "Banned units"
-    more = f" and {len(stood) - 3} more" if len(stood) > 3 else ""
+    more = f" and {counted(len(stood) - 3, 'more phone')}" if len(stood) > 3 else ""
     return f"No motion for {gone}: {'; '.join(stood[:3])}{more}"
 
 

@@ -13,8 +13,8 @@ from typing import Annotated, Any
 import typer
 
 from corpus_tools.cli.bench.rows import BENCHMARKS, Ground, Row
-from corpus_tools.cli.common import emit_json, progress_bar, say
-from corpus_tools.core import OutputError, atomic_file, check_writable
+from corpus_tools.cli.common import PATH, emit_json, progress_bar, say
+from corpus_tools.core import OutputError, atomic_file, check_writable, counted
 from corpus_tools.demo import simulate_corpus
 from corpus_tools.pipeline import OpenCorpus, Progress, library_versions, open_corpus
 
@@ -89,10 +89,16 @@ def _report(corpus: OpenCorpus, found: dict[str, list[Row]]) -> dict[str, Any]:
     }
 
 
+def _verdict(met: int, not_met: int) -> str:
+    if not met + not_met:
+        return "Nothing here has a bar"
+    return f"{met} of {counted(met + not_met, 'bar')} met here"
+
+
 def bench(
-    out: Annotated[Path, typer.Option("--out", help="JSON file for the figures.")],
+    out: Annotated[Path, typer.Option("--out", **PATH, help="JSON file for the figures.")],
     corpus: Annotated[
-        Path | None, typer.Option("--corpus", help="A corpus of your own; else a simulated one.")
+        Path | None, typer.Option("--corpus", **PATH, help="A corpus of your own; else a simulated one.")
     ] = None,
     only: Annotated[
         str | None, typer.Option("--only", help=f"Topics, by comma, of: {', '.join(BENCHMARKS)}.")
@@ -120,7 +126,7 @@ def bench(
         say(topic)
         for line in table_lines(rows):
             say(line)
-    say(f"{report['met']} bars met, {len(report['not_met'])} not met here; figures in {out}")
+    say(f"{_verdict(report['met'], len(report['not_met']))}; figures in {out}")
     if json_:
         emit_json(report)
 
