@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from corpus_tools.config import ConfigBase
-from corpus_tools.core import FloatArray, Mesh, MeshError, Trajectory
+from corpus_tools.core import FloatArray, Mesh, MeshError, Trajectory, counted
 from corpus_tools.mesh import DEFORMERS, Binding, mesh_by_name_or_file
 from corpus_tools.pipeline.opened import OpenCorpus
 from corpus_tools.pipeline.threads import one_thread
@@ -81,7 +81,7 @@ def prepare_head(corpus: OpenCorpus, mesh: str | Mesh, config: ConfigBase) -> He
     names = tuple(n for n in corpus.markers if n in target.markers)
     if len(names) < 8:
         raise MeshError(
-            f"The mesh '{target.name}' and the corpus share {len(names)} markers of "
+            f"The mesh '{target.name}' and the corpus share {counted(len(names), 'marker')} of "
             f"{len(corpus.markers)}; at least 8 are needed: name its marker vertices as the corpus does."
         )
     span_mm = float(np.ptp(target.vertices_mm[[target.markers[n] for n in names]], axis=0).max())

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from corpus_tools.core import FloatArray, MeshError, Registry, frozen
+from corpus_tools.core import FloatArray, MeshError, Registry, counted, frozen
 
 __all__ = [
     "WARP_KERNELS",
@@ -229,7 +229,8 @@ def _check_landmarks(source: FloatArray, target: FloatArray) -> None:
         )
     if len(source) < 4:
         raise MeshError(
-            f"The warp has {len(source)} landmarks; at least 4 that do not lie in one plane are needed."
+            f"The warp has {counted(len(source), 'landmark')}; at least 4 that do not lie in one plane are "
+            "needed."
         )
     if not (np.isfinite(source).all() and np.isfinite(target).all()):
         raise MeshError("A landmark of the warp is not finite; fill the gaps of the neutral pose first.")

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from corpus_tools.core import FloatArray, InputError, IntArray, Utterance
+from corpus_tools.core import FloatArray, InputError, IntArray, Utterance, counted
 from corpus_tools.fragments import phone_codes
 from corpus_tools.synthesis.model import SHORTEST_S, SelectionModel
 
@@ -100,7 +100,9 @@ def prepare_target(
     _check_weights(weights | dict(velocity=velocity, per_join=per_join))
     labels = utterance.labels
     if len(labels) < 2:
-        raise InputError(f"'{utterance.name}' has {len(labels)} phones; a target needs at least two.")
+        raise InputError(
+            f"'{utterance.name}' has {counted(len(labels), 'phone')}; a target needs at least two."
+        )
     codes = phone_codes(model.inventory, labels)
     classes = _class_numbers(model, labels)
     silent = np.array([p == model.phones.silence for p in labels])

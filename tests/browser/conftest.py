@@ -10,6 +10,9 @@ import pytest
 from browser import chromium as shared
 from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 
+from corpus_tools.demo import simulate_corpus
+from workbench.apps.serving import Options, Workbench, free_port
+
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
@@ -53,3 +56,17 @@ def serve() -> Iterator[Callable[..., str]]:
     yield start
     for server in servers:
         server.stop()
+
+
+@pytest.fixture(scope="session")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Workbench, Path]]:
+    """Serve the page of a simulated corpus of 12 sentences: its address, the workbench, and its root."""
+    folder = tmp_path_factory.mktemp("page")
+    simulate_corpus(folder / "corpus", n_sentences=12)
+    workbench = Workbench(Options(corpus=folder / "corpus", root=folder, browser=False))
+    port = free_port()
+    server = workbench.serve(port=port, threaded=True)
+    yield f"http://127.0.0.1:{port}/", workbench, folder
+    for page in list(workbench.pages):
+        page.close()
+    server.stop()

@@ -10,7 +10,7 @@ from browser.shown import GROUND, SIZE
 from PIL import Image
 
 import workbench.views.stills as stills
-from corpus_tools.mesh import bind_bid, bundled_head
+from corpus_tools.mesh import bind_bid, bundled_head, level_neck, neck_rim
 from corpus_tools.render import OffscreenStatus, probe_offscreen
 from workbench.views.face import head_camera
 from workbench.views.head_actors import head_actors
@@ -46,11 +46,13 @@ def make_view(spoken, **params):
 def test_the_pose_drawn_by_the_server_is_that_of_the_deformer(spoken):
     if not probe_offscreen().ok:
         pytest.skip(probe_offscreen().reason)
-    _, binding, shift = spoken
+    head, binding, shift = spoken
     view = make_view(spoken)
     scene = PosedScene(view.actors, view.lights)
     scene.pose(view.actors, {**view.motion}, 45.5 / 30)
     wanted = binding.apply(binding.rest_mm + 0.5 * (shift[45:46] + shift[46:47]))[0]
+    rim = neck_rim(head)  # level in pictures, and at rest
+    wanted[rim] = level_neck(head).vertices_mm[rim]
     skin = np.frombuffer(view.actor("skin")["ids"], np.uint32)
     points = np.asarray(scene.plotter.actors["skin"].mapper.dataset.points)
     np.testing.assert_allclose(points, wanted[skin], atol=1e-3)

@@ -2,7 +2,13 @@
 
 from workbench.actions.corpora import CorpusCache, inside_root
 from workbench.actions.desk import Desk
-from workbench.actions.export import export_config, replay_command, suggested_path
+from workbench.actions.export import (
+    cache_folder,
+    export_config,
+    exports_beside,
+    replay_command,
+    suggested_path,
+)
 from workbench.actions.jobs import Cancelled, Gate, Job, LatestJob
 from workbench.actions.picks import ban_unit, heard, options_shown, swap_to, swap_unit, toggle_pin, unban
 
@@ -14,7 +20,9 @@ __all__ = [
     "Job",
     "LatestJob",
     "ban_unit",
+    "cache_folder",
     "export_config",
+    "exports_beside",
     "heard",
     "inside_root",
     "options_shown",

@@ -50,7 +50,7 @@ class Desk:
         )
         self._others: LatestJob[Result] = LatestJob(deliver, self._compared, lambda number, sentence: None)
         self._exports: LatestJob[Path] = LatestJob(deliver, self._exported, self._not_exported)
-        self._on_export: Callable[[str, str], None] = lambda kind, text: None
+        self._on_export: Callable[[str, str, str], None] = lambda kind, text, where: None
         session.param.watch(self._recompute, ["corpus", *EDITABLE])
         session.param.watch(self._after, ["result", "kept", "side"])
 
@@ -186,7 +186,9 @@ class Desk:
         if wanted is not None and wanted.same_target(other.request) and wanted.config == other.request.config:
             self.session.other = other
 
-    def export(self, path: str | Path, done: Callable[[str, str], None]) -> None:
+    def export(
+        self, path: str | Path, done: Callable[[str, str, str], None], beside: Path | None = None
+    ) -> None:
         """Write the config in the background.
 
         Parameters
@@ -194,23 +196,27 @@ class Desk:
         path : path
             File to write.
         done : callable
-            ``done(kind, text)``: ("ok", the line that replays it) or ("err", one sentence).
+            ``done(kind, text, where)``: ("ok", the line that replays it, the file written) or
+            ("err", one sentence, "").
+        beside : path, optional
+            Folder that a path which is not absolute counts from.
         """
         self._on_export = done
         corpus = self.session.corpus
         if corpus is None or self.session.request() is None:
-            done("err", "There is nothing to export yet: open a corpus, and pick or type a sentence first.")
+            told = "There is nothing to export yet: open a corpus, and pick or type a sentence first."
+            done("err", told, "")
             return
 
         def work(job: Job) -> Path:
             provenance = corpus_provenance(corpus)
             job.check()
-            return export_config(self.session, path, provenance, self.cache.root)[0]
+            return export_config(self.session, path, provenance, self.cache.root, beside)[0]
 
         self._exports.submit(work)
 
     def _exported(self, number: int, path: Path) -> None:
-        self._on_export("ok", replay_command(self.session, path))
+        self._on_export("ok", replay_command(self.session, path), str(path))
 
     def _not_exported(self, number: int, sentence: str) -> None:
-        self._on_export("err", sentence)
+        self._on_export("err", sentence, "")

@@ -7,12 +7,38 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import platformdirs
+
 from corpus_tools.config import ConfigBase, config_from_dict, load_config, write_config
 from corpus_tools.core import ConfigError, InputError, OutputError
 from workbench.actions.corpora import inside_root
 from workbench.state import Session
 
-__all__ = ["export_config", "replay_command", "suggested_path"]
+__all__ = ["cache_folder", "export_config", "exports_beside", "replay_command", "suggested_path"]
+
+_APP = "visual-speech-workbench"
+
+
+def cache_folder() -> Path:
+    """Return the user's cache folder of the workbench, where the simulated starter corpus is made."""
+    return Path(platformdirs.user_cache_dir(_APP, appauthor=False))
+
+
+def exports_beside(corpus_folder: Path) -> Path:
+    """Return the folder that the exports of a corpus go to unless another is typed.
+
+    ``exports`` beside corpus.toml; for a corpus in the cache, which may be deleted at any time, ``exports``
+    in the user's data folder of the workbench.
+
+    Parameters
+    ----------
+    corpus_folder : path
+        Folder that holds corpus.toml.
+    """
+    corpus_folder = corpus_folder.resolve()
+    if corpus_folder.is_relative_to(cache_folder().resolve()):
+        return Path(platformdirs.user_data_dir(_APP, appauthor=False)) / "exports"
+    return corpus_folder / "exports"
 
 
 def suggested_path(folder: Path, stem: str) -> Path:
@@ -28,7 +54,9 @@ def suggested_path(folder: Path, stem: str) -> Path:
 def replay_command(session: Session, path: str | Path) -> str:
     """Return the line that makes the same motion in a shell, quoted where needed."""
     kind, what = session.target
-    parts = ["corpus-tools", "synth", session.folder or "CORPUS"]
+    corpus = session.corpus
+    folder = session.folder or (str(corpus.description.folder) if corpus is not None else "CORPUS")
+    parts = ["corpus-tools", "synth", folder]
     if kind == "text":
         parts += [f"--text={what}"]
     else:
@@ -59,6 +87,7 @@ def export_config(
     path: str | Path,
     provenance: Mapping[str, Any] | None = None,
     root: Path | None = None,
+    beside: Path | None = None,
 ) -> tuple[Path, ConfigBase]:
     """Write every value of the session's config to a file, whole or not at all.
 
@@ -71,6 +100,8 @@ def export_config(
         Corpus and code hashes to write beside the values.
     root : path, optional
         Folder the file must lie in (remote use).
+    beside : path, optional
+        Folder that a path which is not absolute counts from; the working directory when not given.
 
     Returns
     -------
@@ -84,7 +115,8 @@ def export_config(
     """
     if not str(path).strip():
         raise InputError("No file was given; type where the config is to be written.")
-    target = inside_root(path, root)
+    text = str(path).strip()
+    target = inside_root(text if text.startswith("~") else Path(beside or "") / text, root)
     if not target.suffix and not target.is_dir():
         target = target.with_suffix(".toml")
     _refuse_foreign(target)

@@ -10,13 +10,23 @@ from typing import Any
 import panel as pn
 
 from corpus_tools.core import counted
-from workbench.actions import CorpusCache, Desk, Gate, ban_unit, heard, suggested_path, swap_unit, toggle_pin
+from workbench.actions import (
+    CorpusCache,
+    Desk,
+    Gate,
+    ban_unit,
+    exports_beside,
+    heard,
+    suggested_path,
+    swap_unit,
+    toggle_pin,
+)
 from workbench.state import Session
 from workbench.views.bar import AppBar
 from workbench.views.controls import Controls
 from workbench.views.export_box import ExportBox
 from workbench.views.fragment_inspector import FragmentInspector
-from workbench.views.settings_panel import PRESETS, settings_panel
+from workbench.views.settings_panel import PRESETS, SettingsPanel
 from workbench.views.shell import Shell
 from workbench.views.transport import Transport
 from workbench.views.welcome import Welcome
@@ -27,7 +37,19 @@ __all__ = ["DASHBOARDS", "BlendPage"]
 DASHBOARDS = [{"id": "corpus", "label": "Corpus"}, {"id": "blend", "label": "Blend"}]
 """What the rail shows: only what exists."""
 
-_STATUS_KEYS = ["play", "next_join", "next_unit", "pin", "ban", "hear", "sides", "curve", "undo", "help"]
+_STATUS_KEYS = [
+    "play",
+    "next_join",
+    "next_unit",
+    "pin",
+    "ban",
+    "hear",
+    "sides",
+    "curve",
+    "overlap",
+    "undo",
+    "help",
+]
 _clocks = itertools.count(1)
 
 
@@ -40,8 +62,8 @@ class BlendPage:
         Shared by the tabs of a server.
     make_demo : callable
         ``make_demo(progress) -> folder`` of the simulated starter corpus.
-    export_folder : path
-        Where the first suggestion for a config file points.
+    export_folder : path or None
+        Where configs are written unless another place is typed; None: beside the open corpus.
     deliver : callable
         Runs an action where this tab's parameters may be set; not called before the browser has the page.
     fill : bool
@@ -54,7 +76,7 @@ class BlendPage:
         self,
         cache: CorpusCache,
         make_demo: Callable[[Callable[[float, str], None]], Path],
-        export_folder: Path,
+        export_folder: Path | None,
         deliver: Callable[[Callable[[], None]], None],
         fill: bool = True,
         begin: str = "blend",
@@ -71,9 +93,8 @@ class BlendPage:
         self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
         self.board = BlendBoard(self.session, self.controls, clock, self.desk.cancel)
         self.inspector = FragmentInspector(self.session, self._hear)
-        self.export = ExportBox(
-            self.controls, str(suggested_path(export_folder, "blend")), on_export=self.desk.export
-        )
+        self._export_folder = export_folder
+        self.export = ExportBox(self.controls, on_export=self._export)
         self.welcome = Welcome(
             self.session,
             self.controls,
@@ -94,7 +115,7 @@ class BlendPage:
             starting=True,
             inspector=self.inspector.pane,
             inspector_foot=pn.Column(
-                settings_panel(self.controls),
+                SettingsPanel(self.session, self.controls).__panel__(),
                 self.export.__panel__(),
                 sizing_mode="stretch_width",
                 margin=0,
@@ -149,8 +170,20 @@ class BlendPage:
     def _corpus(self, event: Any) -> None:
         if event.new is not None:
             self.shell.page_title = f"{event.new.description.name} – blend"
+            if self.exports is not None:
+                self.export.suggest(str(suggested_path(self.exports, "blend")))
             self.show(self._begin)
             self._begin = "blend"
+
+    @property
+    def exports(self) -> Path | None:
+        """Folder that configs are written to unless another is typed; None without a corpus."""
+        corpus = self.session.corpus
+        beside = exports_beside(corpus.description.folder) if corpus is not None else None
+        return self._export_folder or beside
+
+    def _export(self, path: str, done: Callable[[str, str, str], None]) -> None:
+        self.desk.export(path, done, self.exports)
 
     def _opening(self, event: Any) -> None:
         if event.new in ("empty", "error"):

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import panel as pn
-import platformdirs
 
 from corpus_tools.core import InputError
 from corpus_tools.demo import demo_folder
-from workbench.actions import CorpusCache
+from workbench.actions import CorpusCache, cache_folder
 from workbench.apps.blend import BlendPage
 from workbench.views.theme import ASSETS_ROUTE, FRONTEND
 
@@ -156,9 +155,7 @@ class Workbench:
 
     def make_demo(self, progress: Callable[[float, str], None]) -> Path:
         """Make the simulated starter corpus once, in the user's cache folder; return its folder."""
-        folder = (
-            Path(platformdirs.user_cache_dir("visual-speech-workbench", appauthor=False)) / "starter-corpus"
-        )
+        folder = cache_folder() / "starter-corpus"
         while not self._demo_lock.acquire(timeout=0.2):
             progress(0.0, "another tab is making it")
         try:
@@ -178,7 +175,7 @@ class Workbench:
         made = BlendPage(
             self.cache,
             self.make_demo,
-            self.options.root or Path.cwd(),
+            self.options.root / "exports" if self.options.root else None,
             deliver if doc is not None else _at_once,
             begin=self.options.app,
         )

@@ -177,7 +177,12 @@ export function renderBoard({ model, el }) {
   const warning = document.createElement("div");
   warning.className = "notice warn band";
   warning.setAttribute("role", "status");
-  lane.card.append(notice, warning, slot(model, "lane"), slot(model, "curves"), progress(model));
+  const curves = slot(model, "curves");
+  const drawing = document.createElement("p"); // behind the plots: they cover it when they are there
+  drawing.className = "drawing";
+  drawing.textContent = "Drawing the trajectories…";
+  curves.prepend(drawing);
+  lane.card.append(notice, warning, slot(model, "lane"), curves, progress(model));
 
   const draw = () => {
     tag.textContent = model.head_text;

@@ -8,6 +8,29 @@ function placeOf(node) {
   return action && `[data-action="${CSS.escape(action)}"][data-value="${CSS.escape(value ?? "")}"]`;
 }
 
+/** Scroll a list, and nothing around it, so that a row of it can be seen. */
+function showRow(rows, row) {
+  if (!row) return;
+  const head = rows.querySelector("thead")?.offsetHeight ?? 0;
+  const [list, own] = [rows.getBoundingClientRect(), row.getBoundingClientRect()];
+  if (own.top < list.top + head) rows.scrollTop -= list.top + head - own.top;
+  else if (own.bottom > list.bottom) rows.scrollTop += own.bottom - list.bottom;
+}
+
+/** Put the text of a field on the clipboard and say so on the button; a page without leave to, selects it. */
+async function copyFrom(field, button) {
+  const before = button.textContent;
+  try {
+    await navigator.clipboard.writeText(field.value);
+    button.textContent = "Copied";
+  } catch {
+    field.focus();
+    field.select();
+    button.textContent = document.execCommand("copy") ? "Copied" : "Press Ctrl C";
+  }
+  setTimeout(() => (button.textContent = before), 1500);
+}
+
 /** Panel entry point. */
 export function renderHtml({ model, el }) {
   const root = document.createElement("div");
@@ -17,7 +40,12 @@ export function renderHtml({ model, el }) {
     const had = root.contains(focused()) ? focused() : null;
     const place = placeOf(had);
     const list = had?.closest("[data-list]")?.dataset.list;
+    const scrolled = [...root.querySelectorAll(".rows")].map((e) => [e.className, e.scrollTop]);
     root.innerHTML = model.html;
+    for (const rows of root.querySelectorAll(".rows")) {
+      rows.scrollTop = scrolled.find(([name]) => name === rows.className)?.[1] ?? 0;
+      showRow(rows, rows.querySelector(".now"));
+    }
     if (!had) return;
     const same = place && root.querySelector(place);
     const inList = list && root.querySelector(`[data-list="${CSS.escape(list)}"] .now[data-action]`);
@@ -25,6 +53,8 @@ export function renderHtml({ model, el }) {
   };
   const act = (node) => model.send_msg({ action: node.dataset.action, value: node.dataset.value ?? "" });
   root.addEventListener("click", (event) => {
+    const copier = event.target.closest("[data-copy]");
+    if (copier) return copyFrom(root.querySelector(`#${CSS.escape(copier.dataset.copy)}`), copier);
     const node = event.target.closest("[data-action]");
     if (!node || node.disabled) return;
     node.focus({ preventScroll: true });

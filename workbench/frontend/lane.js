@@ -57,6 +57,7 @@ export function renderLane({ model, el }) {
   };
   clk.addEventListener("view", follow);
 
+  const counted = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
   const moveCursor = (t) => {
     const x = toX(state.box, window_.range, t);
     cursor.hidden = x < state.box.left - 1 || x > state.box.right + 1;
@@ -79,7 +80,8 @@ export function renderLane({ model, el }) {
     const s = model.score;
     canvas.setAttribute(
       "aria-label",
-      `${s.phones.length} phones spoken by ${s.fragments.length} fragments, ${model.joins.length} joins, lip aperture`,
+      `${counted(s.phones.length, "phone")} spoken by ${counted(s.fragments.length, "fragment")}, ` +
+        `${counted(model.joins.length, "join")}, lip aperture`,
     );
     drawList();
     ask();

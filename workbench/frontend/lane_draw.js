@@ -4,6 +4,7 @@
  */
 import { fitText, niceStep, tint, toX } from "./lane_axes.js";
 import { drawAperture } from "./lane_curve.js";
+import { drawBadges, placeBadges } from "./lane_joins.js";
 
 function drawGutter(ctx, box, p) {
   const names = [
@@ -11,7 +12,7 @@ function drawGutter(ctx, box, p) {
     ["fragments", "Chosen", "source"],
     ["others", "Others", ""],
     ["curve", "Aperture", "mm"],
-    ["joins", "Joins", "ratio"],
+    ["joins", "Joins", "accel. ÷ p95"],
   ];
   ctx.textAlign = "left";
   for (const [row, title, hint] of names) {
@@ -156,36 +157,6 @@ function drawOverlaps(ctx, box, view, joins, chosen, p) {
   });
 }
 
-function drawJoins(ctx, box, view, joins, chosen, p) {
-  const [top, bottom] = box.joins;
-  ctx.font = `600 11px ${p.family}`;
-  ctx.textAlign = "center";
-  let edge = -Infinity;
-  joins.forEach((join, index) => {
-    const x = toX(box, view, join.time);
-    if (x < box.left || x > box.right) return;
-    const known = join.ratio !== null;
-    const high = known && join.ratio > 1;
-    const before = join.other === null || join.other === undefined ? "" : `${join.other.toFixed(2)} → `;
-    const now = known ? `${high ? "▲ " : ""}${before}${join.ratio.toFixed(2)}` : "–";
-    const full = `${join.phone} ${now}`;
-    const next = joins[index + 1] ? toX(box, view, joins[index + 1].time) - x : Infinity;
-    const short = `${high ? "▲ " : ""}${known ? join.ratio.toFixed(2) : "–"}`;
-    const text = ctx.measureText(full).width + 16 < next ? full : short;
-    const w = ctx.measureText(text).width + 12;
-    const left = Math.min(Math.max(x - w / 2, box.left), box.right - w);
-    if (left < edge + 3) return;
-    edge = left + w;
-    ctx.fillStyle = high ? p.warn_ground : p.panel;
-    ctx.fillRect(left, top + 2, w, bottom - top - 4);
-    const near = index === chosen || index === chosen - 1;
-    ctx.strokeStyle = near ? p.acc : high ? p.warn : p.line;
-    ctx.strokeRect(left + 0.5, top + 2.5, w - 1, bottom - top - 5);
-    ctx.fillStyle = high ? p.warn : known ? p.ok : p.ink;
-    ctx.fillText(text, left + w / 2, top + 16);
-  });
-}
-
 /** Draw the whole lane. */
 export function drawLane(ctx, box, view, data, palette) {
   const { score, joins, selected } = data;
@@ -211,6 +182,7 @@ export function drawLane(ctx, box, view, data, palette) {
   ctx.rect(box.left, 0, box.right - box.left, box.height);
   ctx.clip();
   drawOverlaps(ctx, box, view, joins, selected, palette);
-  drawJoins(ctx, box, view, joins, selected, palette);
+  data.badges = placeBadges(ctx, box, view, joins, selected, palette.family);
+  drawBadges(ctx, box, data.badges, palette);
   ctx.restore();
 }

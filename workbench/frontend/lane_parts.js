@@ -2,7 +2,7 @@
  * Parts of the lane: its curves as arrays, what it says of a point, its list for keyboard and screen reader, its
  * window.
  */
-import { toTime, toX } from "./lane_axes.js";
+import { toTime } from "./lane_axes.js";
 
 const MIN_SPAN_S = 0.08;
 
@@ -38,6 +38,17 @@ export function chipAt(state, x) {
   return state.chips?.find((c) => x >= c.x && x <= c.x + c.w);
 }
 
+function joinText(join) {
+  const { ratio, percentile, other } = join;
+  let place = "peak acceleration unknown";
+  if (ratio !== null) {
+    const below = percentile === null ? "" : `, above ${percentile.toFixed(0)} % of the peaks in natural speech`;
+    place = `peak acceleration ${ratio.toFixed(2)} × the natural 95th percentile${below}`;
+    if (other !== null && other !== undefined) place += ` (setting A: ${other.toFixed(2)})`;
+  }
+  return `join at ${join.phone}, ${join.time.toFixed(3)} s · overlap ${join.overlap.toFixed(3)} s · ${place}`;
+}
+
 /** What the lane says of the point (x, y); empty where there is nothing. */
 export function tooltipText(state, x, y) {
   const { box, view, score, joins, curves } = state;
@@ -55,14 +66,8 @@ export function tooltipText(state, x, y) {
   }
   const chip = y >= box.others[0] && y <= box.others[1] && chipAt(state, x);
   if (chip) return `${chip.id}: click to let it speak here`;
-  const near = joins.find((j) => Math.abs(toX(box, view, j.time) - x) < 24);
-  if (y >= box.joins[0] && near) {
-    const place =
-      near.ratio === null
-        ? "unknown"
-        : `${near.ratio.toFixed(2)} of natural p95, ${near.percentile?.toFixed(0)} % of natural peaks lie below`;
-    return `join at ${near.phone}, ${near.time.toFixed(3)} s · overlap ${(1000 * near.overlap).toFixed(0)} ms · peak acceleration: ${place}`;
-  }
+  const badge = y >= box.joins[0] && state.badges?.find((b) => x >= b.left && x <= b.left + b.w);
+  if (badge) return joinText(joins[badge.index]);
   if (y < box.curve[0] || y > box.curve[1]) return "";
   const at = (values, rate, start) => values[Math.round((t - start) * rate)];
   const now = at(curves.blend, curves.rate, curves.start);

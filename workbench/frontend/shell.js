@@ -4,6 +4,8 @@
  * are: the start page and the work area are both there, and one of them is shown.
  */
 import { clock } from "./clock.js";
+import { buildConnection } from "./connection.js";
+import { deepFind, focusOverlap } from "./deep.js";
 
 const PLACES = { bar: "div", transport: "div", work: "main", start: "main" };
 const LOGO = `<svg viewBox="0 0 32 20" width="28" height="18" fill="none" stroke="currentColor"
@@ -136,14 +138,6 @@ function buildStatus(model) {
   return line;
 }
 
-/** Whether a button stands anywhere in `node`, shadow roots included. */
-function holdsButton(node) {
-  for (const child of node.querySelectorAll("*")) {
-    if (child.tagName === "BUTTON" || (child.shadowRoot && holdsButton(child.shadowRoot))) return true;
-  }
-  return false;
-}
-
 /**
  * Call `then` once the controls in `place` are mounted and listen: a control that is changed between its first
  * drawing and its first listening keeps the old value. After `most` looks without one it is called anyway.
@@ -152,7 +146,7 @@ function whenMounted(place, then, most = 150) {
   let [seen, count] = [0, 0];
   const look = () => {
     count += 1;
-    if (holdsButton(place)) seen += 1;
+    if (deepFind(place, (e) => e.tagName === "BUTTON")) seen += 1;
     if (seen > 3 || count > most) then();
     else setTimeout(look, 20); // not at the next picture: a tab in the background draws none
   };
@@ -160,7 +154,7 @@ function whenMounted(place, then, most = 150) {
 }
 
 /** Panel entry point. */
-export function renderShell({ model, el }) {
+export function renderShell({ model, el, view }) {
   el.style.width = el.style.height = "100%";
   loadFonts(model.fonts);
   const root = document.createElement("div");
@@ -197,6 +191,7 @@ export function renderShell({ model, el }) {
   }
   root.append(inspector);
   root.append(buildStatus(model));
+  root.append(buildConnection(view?.model?.document));
   buildHelp(model, root);
 
   const drawer = document.createElement("button");
@@ -216,6 +211,7 @@ export function renderShell({ model, el }) {
     if (binding.id === "help") return toggleHelp(root);
     if (binding.id === "cancel") toggleHelp(root, false);
     event.preventDefault();
+    if (binding.id === "overlap") return focusOverlap(root);
     const local = { binding: binding.id, index, handled: false };
     clock(model.session).dispatchEvent(new CustomEvent("key", { detail: local }));
     if (!local.handled) model.send_msg({ type: "key", id: binding.id, index });

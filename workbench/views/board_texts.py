@@ -11,7 +11,8 @@ __all__ = ["head_text", "lower_text", "missing_text"]
 def head_text(result: Result) -> str:
     """Return which head is shown and how large it is."""
     mesh, n_markers = result.head.mesh, len(result.head.names)
-    return f"{mesh.name} head · {mesh.n_vertices} vertices · {n_markers} markers"
+    vertices = counted(mesh.n_vertices, "vertex", "vertices")
+    return f"{mesh.name} head · {vertices} · {counted(n_markers, 'marker')}"
 
 
 def missing_text(result: Result) -> str:

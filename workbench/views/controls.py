@@ -39,26 +39,39 @@ class Controls:
         self._made.append(control)
         return control
 
-    def tie(self, control: Any, name: str, parameter: str = "value") -> Any:
-        """Tie a control's value to the session's parameter `name`, both ways; return the control."""
+    def tie(self, control: Any, name: str, parameter: str = "value", factor: float = 1.0) -> Any:
+        """Tie a control's value to the session's parameter `name`, both ways; return the control.
+
+        `factor` is the unit of the session in that of the control: 1000 where seconds are shown as ms.
+        """
         session = self._session
 
+        def shown(value: Any) -> Any:
+            return value if factor == 1.0 else round(value * factor, 6)
+
         def to_session(event: Any) -> None:
-            if event.new is not None and event.new != getattr(session, name):
-                setattr(session, name, event.new)
+            if event.new is not None and event.new != shown(getattr(session, name)):
+                setattr(session, name, event.new if factor == 1.0 else round(event.new / factor, 9))
 
         def to_control(event: Any) -> None:
-            if event.new != getattr(control, parameter):
-                setattr(control, parameter, event.new)
+            if shown(event.new) != getattr(control, parameter):
+                setattr(control, parameter, shown(event.new))
 
-        setattr(control, parameter, getattr(session, name))
+        setattr(control, parameter, shown(getattr(session, name)))
         control.param.watch(to_session, parameter)
         session.param.watch(to_control, name)
         return control
 
 
-def slider(controls: Controls, label: str, name: str, bounds: tuple[float, float], **values: Any) -> Any:
-    """Return a slider tied to the session's parameter `name`."""
+def slider(
+    controls: Controls,
+    label: str,
+    name: str,
+    bounds: tuple[float, float],
+    factor: float = 1.0,
+    **values: Any,
+) -> Any:
+    """Return a slider tied to the session's parameter `name`; `bounds` in the unit that is shown."""
     made = controls.make(
         pmui.FloatSlider,
         label=label,
@@ -70,7 +83,7 @@ def slider(controls: Controls, label: str, name: str, bounds: tuple[float, float
         margin=(0, 4),
         **values,
     )
-    return controls.tie(made, name)
+    return controls.tie(made, name, factor=factor)
 
 
 def select(controls: Controls, label: str, name: str, options: Any, **values: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Export of the config: where to, and the line that replays it."""
+"""Export of the config: where to, where it was written, and the line that replays it."""
 
 from __future__ import annotations
 
@@ -8,25 +8,43 @@ from typing import Any
 
 import panel as pn
 
+from workbench.views.action_html import ActionHtml
 from workbench.views.controls import Controls, button, text_field
 from workbench.views.notice import notice_html
-from workbench.views.theme import style_sheet
 
 __all__ = ["ExportBox", "export_html"]
 
 
-_COPY = "navigator.clipboard?.writeText((line.data ?? line).value)"
+def export_html(kind: str, text: str, where: str = "") -> str:
+    """Return what is shown after an export: where it was written and the line, or the sentence of an error.
 
-
-def export_html(kind: str, text: str) -> str:
-    """Return what is shown after an export: that it was written, or the sentence of an error."""
-    if kind == "ok":
-        return (
-            '<div class="vsw-html" style="padding:0 12px"><p class="ok" role="status" '
-            f'title="{html.escape(text)}">✓ Config written. This line makes the same motion:</p></div>'
-        )
-    notice = notice_html("err", "The config was not written", why=text)
-    return f'<div class="vsw-html" style="padding:4px 12px">{notice}</div>'
+    Parameters
+    ----------
+    kind : "ok", "err" or ""
+    text : str
+        The line that replays it; or why it was not written.
+    where : str
+        The file that was written.
+    """
+    if not kind:
+        return ""
+    close = (
+        '<button type="button" class="close" data-action="close" title="Put this away" '
+        'aria-label="Put this away">✕</button>'
+    )
+    if kind != "ok":
+        said = notice_html("err", "The config was not written", why=text)
+        return f'<div class="export">{close}{said}</div>'
+    line, place = html.escape(text), html.escape(where)
+    rows = min(6, 2 + len(text) // 34)
+    return (
+        f'<div class="export">{close}<p class="ok" role="status" title="{place}">'
+        f"✓ Config written: {place}</p>"
+        '<p>This line makes the same motion: <button type="button" data-copy="replay" '
+        'title="Copy the line to the clipboard">Copy</button></p>'
+        f'<textarea id="replay" readonly rows="{rows}" spellcheck="false" '
+        f'aria-label="Command that replays it" title="{line}">{line}</textarea></div>'
+    )
 
 
 class ExportBox(pn.viewable.Viewer):
@@ -35,52 +53,47 @@ class ExportBox(pn.viewable.Viewer):
     Parameters
     ----------
     controls : Controls
-    path : str
-        Suggested file.
     on_export : callable
-        ``on_export(path, done)`` with ``done(kind, text)``.
+        ``on_export(path, done)`` with ``done(kind, text, where)``.
     """
 
     def __init__(
         self,
         controls: Controls,
-        path: str,
-        on_export: Callable[[str, Callable[[str, str], None]], None],
+        on_export: Callable[[str, Callable[[str, str, str], None]], None],
         **params: Any,
     ) -> None:
-        self._run = on_export
-        self.kind, self.text = "", ""
+        self._run, self._suggested = on_export, ""
+        self.kind = self.text = self.where = ""
         super().__init__(**params)
-        self.path = text_field(controls, "Config file", value=path, margin=(10, 4, 4, 12))
+        self.path = text_field(controls, "Config file", margin=(10, 4, 4, 12))
         self.export = button(
             controls, "Export", primary=True, margin=(12, 12, 4, 0), description="Export config: E"
         )
-        self.line = text_field(controls, "Command that replays it", margin=(10, 4, 4, 12), visible=False)
-        self.copy = button(controls, "Copy", margin=(12, 12, 4, 0), visible=False)
-        self.copy.js_on_click(args={"line": self.line}, code=_COPY)
         self.export.on_click(lambda _: self.submit())
-        self._said = pn.pane.HTML("", stylesheets=[style_sheet()], sizing_mode="stretch_width", margin=0)
+        self._said = ActionHtml(on_action=lambda action, value: self.show("", ""))
+
+    def suggest(self, path: str) -> None:
+        """Suggest a file, unless the person has typed another."""
+        if (self.path.value or "") == self._suggested:
+            self._suggested = path
+            self.path.value = path
 
     def submit(self) -> None:
         """Export to the file of the field."""
         self.export.disabled = True
         self._run(self.path.value_input or self.path.value or "", self.show)
 
-    def show(self, kind: str, text: str) -> None:
+    def show(self, kind: str, text: str, where: str = "") -> None:
         """Show the outcome of an export."""
-        self.kind, self.text = kind, text
+        self.kind, self.text, self.where = kind, text, where
         self.export.disabled = False
-        self._said.object = export_html(kind, text)
-        for part in (self.line, self.copy):
-            part.visible = kind == "ok"
-        if kind == "ok":
-            self.line.value = text
+        self._said.html = export_html(kind, text, where)
 
     def __panel__(self) -> Any:
         return pn.Column(
             pn.Row(self.path, self.export, sizing_mode="stretch_width", margin=0),
             self._said,
-            pn.Row(self.line, self.copy, sizing_mode="stretch_width", margin=0),
             sizing_mode="stretch_width",
             margin=0,
         )

@@ -23,19 +23,37 @@ assert pyvista.plotting
 _NAMES = {"markers": ["markers"], "surface": ["surface", "edges"], "attachment": ["attachment"]}
 GLASS = {"surface": 0.45, "attachment": 0.72}
 """Opacity of the skin over a control surface, and over lines that end below it."""
+ASIDE = 0.1
+"""Of a head on the page: the recorded one and the switches stand at the right."""
 _VIEW_ANGLE_DEG = 20.0
 _AROUND_DEG = 22.0
 _ABOVE_DEG = 3.0
+_OVER, _BELOW = 0.02, 0.12
+"""Ground above the skull and neck below the chin, as shares of the height between."""
 
 
-def head_camera(mesh: Mesh) -> dict[str, Any]:
-    """Return a camera on the marked part of the face, a little from the side, so that lips show in depth."""
-    points = mesh.vertices_mm[list(mesh.markers.values())] if mesh.markers else mesh.vertices_mm
-    low, high = points.min(axis=0), points.max(axis=0)
-    centre, height = 0.5 * (low + high), 1.45 * float(high[1] - low[1])
+def head_camera(mesh: Mesh, aside: float = 0.0) -> dict[str, Any]:
+    """Return a camera on the whole face, a little from the side, so that lips show in depth.
+
+    The top of the skull has some ground above it; below the chin there is neck as far as the picture goes, so
+    that where a head ends is out of sight.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    aside : float
+        How far left of the middle of the picture the head stands, as a share of its height.
+    """
+    skin = mesh.vertices_mm[mesh.part_mask("skin")] if "skin" in mesh.part_names else mesh.vertices_mm
+    marked = mesh.vertices_mm[list(mesh.markers.values())] if mesh.markers else skin
+    top, chin = float(skin[:, 1].max()), float(marked[:, 1].min())
     around, above = np.radians([_AROUND_DEG, _ABOVE_DEG])
     towards = np.array([np.sin(around) * np.cos(above), np.sin(above), np.cos(around) * np.cos(above)])
-    distance = 0.5 * height / np.tan(np.radians(_VIEW_ANGLE_DEG / 2))
+    low, high = chin - _BELOW * (top - chin), top + _OVER * (top - chin)
+    middle = 0.5 * (skin.min(axis=0) + skin.max(axis=0))
+    centre = np.array([middle[0], 0.5 * (low + high), 0.5 * (middle[2] + marked[:, 2].max())])
+    centre += aside * (high - low) * np.array([np.cos(around), 0.0, -np.sin(around)])
+    distance = 0.5 * (high - low) / np.tan(np.radians(_VIEW_ANGLE_DEG / 2))
     return {
         "position": [float(v) for v in centre + distance * towards],
         "focal_point": [float(v) for v in centre],
@@ -85,7 +103,7 @@ class Face(pn.viewable.Viewer):
     def show_rest(self, name: str) -> None:
         """Show a head by name at rest, before there is anything that moves it."""
         mesh = mesh_by_name_or_file(name)
-        self.mesh_view.show_actors(head_actors(mesh), camera=head_camera(mesh))
+        self.mesh_view.show_actors(head_actors(mesh), camera=head_camera(mesh, ASIDE))
 
     def show(self, result: Result) -> None:
         """Show the head of a result and let it move."""
@@ -93,7 +111,9 @@ class Face(pn.viewable.Viewer):
         if result.head is not self._head:
             self._head = result.head
             mesh = result.head.mesh
-            self.mesh_view.show_actors(head_actors(mesh, result.head.binding), camera=head_camera(mesh))
+            self.mesh_view.show_actors(
+                head_actors(mesh, result.head.binding), camera=head_camera(mesh, ASIDE)
+            )
             self._show_overlays()
         self._move()
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import panel as pn
 
+from corpus_tools.core import UnitRef
 from workbench.actions import ban_unit, options_shown, swap_to, swap_unit, toggle_pin, unban
 from workbench.state import Session, fragment_details, pin_at
 from workbench.views.action_html import ActionHtml
@@ -52,6 +53,12 @@ class FragmentInspector(pn.viewable.Viewer):
         if action in commands:
             commands[action]()
 
+    def _begins_s(self, unit: UnitRef) -> float:
+        """Return when a unit begins in its own recording."""
+        corpus = self._session.corpus
+        assert corpus is not None
+        return corpus.utterance(unit.recording).phones.intervals[unit.first].centre_s
+
     def _update(self, *events: Any) -> None:
         s, details = self._session, None
         if s.result is not None and s.selected < len(s.result.selection.chosen):
@@ -62,7 +69,7 @@ class FragmentInspector(pn.viewable.Viewer):
         if options is not None and s.result is not None:
             chosen = s.result.selection.chosen[s.selected]
             pinned = bool(pin_at(s.pins, chosen.first, chosen.last))
-            parts.append(options_html(options, s.text_of, pinned))
+            parts.append(options_html(options, s.text_of, pinned, self._begins_s))
         parts += [bans_html(s.bans), compare_html(s), history_html(s)]
         self.pane.html = "".join(parts)
 

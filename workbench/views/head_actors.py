@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pyvista as pv
 
 from corpus_tools.core import Mesh
-from corpus_tools.mesh import CONTROL_POINTS, Binding, PatchBinding
+from corpus_tools.mesh import CONTROL_POINTS, Binding, PatchBinding, level_neck, neck_rim
 from corpus_tools.mesh.patches import bernstein
 from corpus_tools.render import PART_STYLES, part_surface
 from workbench.views.patches import attached_rows, net_data, shared_patches
@@ -28,6 +28,8 @@ def head_actors(
 ) -> list[dict[str, Any]]:
     """Return one actor for every part of a mesh; the parts that a binding moves carry how.
 
+    The rim of the neck is level (:func:`corpus_tools.mesh.level_neck`) and rests.
+
     Parameters
     ----------
     mesh : Mesh
@@ -39,8 +41,9 @@ def head_actors(
         Where the head stands.
     """
     found = []
+    drawn = level_neck(mesh)
     for part in mesh.part_names:
-        surface = part_surface(mesh, part)
+        surface = part_surface(drawn, part)
         used = np.asarray(surface.point_data["vertex"])
         style: dict[str, Any] = dict(PART_STYLES.get(part, _OTHER))
         if "colour" in surface.point_data:
@@ -57,7 +60,7 @@ def _moved_by(binding: Binding, used: npt.NDArray[np.int64]) -> dict[str, Any]:
     if not isinstance(binding, PatchBinding):
         return {"basis": binding.response(used)}
     a = binding.attachment
-    mine = np.isin(a.vertices, used)
+    mine = np.isin(a.vertices, used) & ~np.isin(a.vertices, neck_rim(binding.mesh))
     rows = np.searchsorted(used, a.vertices[mine])
     attached = attached_rows(len(used), rows, a.patch[mine], a.bary[mine], a.offset[mine], a.weight[mine])
     net = net_data(binding.surface.net, binding.surface.control_rest_mm, CONTROL_POINTS)

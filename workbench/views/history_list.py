@@ -6,7 +6,7 @@ import html
 import math
 import time
 
-from workbench.state import Entry, Session
+from workbench.state import Entry, Result, Session
 from workbench.views.action_html import action_button
 
 __all__ = ["compare_html", "history_html"]
@@ -39,16 +39,20 @@ def history_html(session: Session) -> str:
         return ""
     rows = [_row(e, e.number == history.at) for e in history.entries[: -SHOWN - 1 : -1]]
     return (
-        f'<section><h3>History<span class="end">{len(history.entries)}</span></h3><table>'
-        '<colgroup><col style="width:56px"><col><col style="width:44px"></colgroup>'
-        '<thead><tr><th>When</th><th>What</th><th class="num">Worst</th></tr></thead>'
+        f'<section><h3>History<span class="end">{len(history.entries)}</span></h3>'
+        '<div class="rows history"><table>'
+        '<colgroup><col style="width:64px"><col><col style="width:44px"></colgroup>'
+        '<thead><tr><th>When</th><th>What</th><th class="num" '
+        'title="Worst join: peak acceleration over the natural 95th percentile">Worst</th></tr></thead>'
         f'<tbody data-list="history" role="listbox" aria-label="States of this session">{"".join(rows)}'
-        "</tbody></table></section>"
+        "</tbody></table></div></section>"
     )
 
 
-def _worst(ratios: tuple[float, ...]) -> str:
-    return f"worst join {_ratio(max(ratios))}" if ratios else "no joins"
+def _worst(result: Result | None) -> str:
+    if result is None:
+        return "…"
+    return _ratio(max(result.ratios)) if result.ratios else "no joins"
 
 
 def compare_html(session: Session) -> str:
@@ -61,10 +65,12 @@ def compare_html(session: Session) -> str:
     if not difference:
         told = "<p>A and B are equal: change a setting.</p>"
     else:
-        rows = f"<dt>A</dt><dd>{_worst(a.ratios) if a else '…'}</dd>"
-        rows += f'<dt class="acc">B</dt><dd>{_worst(b.ratios) if b else "…"}</dd>'
-        rows += f'<dt>A → B</dt><dd class="wrap">{html.escape(difference)}</dd>'
-        told = f"<dl>{rows}</dl>"
+        title = "Peak acceleration of the worst join over the natural 95th percentile"
+        told = (
+            f'<dl><dt title="{title}">Worst join</dt><dd title="{title}">A {_worst(a)} → '
+            f'<span class="acc">B {_worst(b)}</span></dd>'
+            f'<dt>Changed</dt><dd class="wrap">{html.escape(difference)}</dd></dl>'
+        )
     buttons = action_button(
         "sides", f"Show {'A' if session.side == 'B' else 'B'}", "X", disabled=not difference
     )

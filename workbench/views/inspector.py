@@ -5,7 +5,8 @@ from __future__ import annotations
 import html
 from collections.abc import Callable
 
-from workbench.state import FragmentDetails, Options, tokens
+from corpus_tools.core import Costs, UnitRef, counted
+from workbench.state import FragmentDetails, Option, Options, tokens
 from workbench.views.action_html import action_button
 
 __all__ = ["bans_html", "details_html", "options_html"]
@@ -19,6 +20,13 @@ _TERMS = {
     "velocity": "join velocity",
     "each": "each join",
 }
+_DOUBTS = ("backoff", "flagged")
+_COLUMNS = (
+    ("At, s", "Where it begins in its own recording"),
+    ("Timing", "Cost: how far its phones are from the durations wanted"),
+    ("Context", "Cost: neighbours other than those it is to have"),
+    ("Join", "Cost: posture and velocity where it meets the fragment before"),
+)
 
 
 def _escape(text: object) -> str:
@@ -49,7 +57,7 @@ def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -
         f'<dt>Out</dt><dd title="{_escape(join["before"])}: {_escape(join["before_text"])}">'
         f"{_source(join['before'], join['before_text'], colour)}</dd>"
         f"<dt>Peak accel.</dt><dd>{peak}</dd>"
-        f"<dt>Overlap</dt><dd>{1000 * join['overlap']:.0f} ms, {frames} frames</dd>"
+        f"<dt>Overlap</dt><dd>{join['overlap']:.3f} s, {counted(frames, 'frame')}</dd>"
         f"<dt>Gap before</dt><dd>{join['gap']:.2f} mm, {join['gap_mm_s']:.0f} mm/s</dd>"
     )
 
@@ -80,15 +88,56 @@ def _costs_html(details: FragmentDetails, colour: str) -> str:
         f'<span><i class="bar" style="display:block;width:{100 * abs(value) / largest:.1f}%;'
         f'background:{colour}"></i></span><span class="value">{value:.2f}</span>'
         for name, value in details.costs
+        if value
     )
+    free = ", ".join(_escape(_TERMS.get(name, name)) for name, value in details.costs if not value)
+    title = "Sum of the terms; the search keeps the sum over the sentence low"
+    title += f". Nothing for {free}." if free else "."
     return (
-        f'<section><h3>Why this fragment<span class="end">cost {details.total:.2f}</span></h3>'
+        f'<section><h3>Why this fragment<span class="end" title="{title}">cost {details.total:.2f}</span>'
+        "</h3>"
         f'<div class="bars">{rows}</div></section>'
     )
 
 
-def options_html(options: Options, text_of: Callable[[str], str], pinned: bool) -> str:
+def _cost(costs: Costs, term: str) -> str:
+    value = dict(costs.target).get(term)
+    return "–" if value is None else f"{value:.2f}"
+
+
+def _option_row(index: int, option: Option, options: Options, text: str, at_s: float) -> str:
+    """Return one unit as a row: where it was recorded, and the costs that tell it from the others."""
+    name, costs = option.unit.recording, option.costs
+    terms = ", ".join(f"{_TERMS.get(k, k)} {v:.2f}" for k, v in (*costs.target, *costs.join))
+    n, most = option.last - option.first, max(o.last - o.first for o in options.options)
+    target = dict(costs.target)
+    mark = ""
+    if n < most:
+        short = f"It speaks only the first {counted(n + 1, 'phone')} of the place"
+        mark += f' <span class="warn" title="{short}">{n + 1} ph.</span>'
+    if any(target.get(term) for term in _DOUBTS):
+        doubt = "Another phone stands in, or its frames were filled or doubtful"
+        mark += f' <span class="warn" title="{doubt}">▲</span>'
+    now = ' class="now" aria-selected="true"' if index == options.at else ""
+    title = f"{name}, from {at_s:.3f} s: “{text}” · cost {costs.total:.2f}: {terms}"
+    return (
+        f'<tr{now} role="option" tabindex="{0 if index == options.at else -1}" data-action="swap" '
+        f'data-value="{index}" title="{_escape(title)}"><td>{_escape(name)}{mark}</td>'
+        f'<td class="num">{at_s:.2f}</td><td class="num">{_cost(costs, "timing")}</td>'
+        f'<td class="num">{_cost(costs, "context")}</td><td class="num">{costs.join_total:.2f}</td></tr>'
+    )
+
+
+def options_html(
+    options: Options,
+    text_of: Callable[[str], str],
+    pinned: bool,
+    at_s: Callable[[UnitRef], float],
+) -> str:
     """Return the units that could speak the selected place, as a list to choose from.
+
+    Sentences of one grammar look alike, so the list tells the units apart by recording, time and costs; the
+    words stand in the tooltip.
 
     Parameters
     ----------
@@ -97,20 +146,13 @@ def options_html(options: Options, text_of: Callable[[str], str], pinned: bool) 
         Words of a recording.
     pinned : bool
         Whether the place is pinned.
+    at_s : callable
+        When a unit begins in its own recording, s.
     """
-    rows, most = [], max(o.last - o.first for o in options.options)
-    for index, option in enumerate(options.options):
-        name, costs = option.unit.recording, option.costs
-        terms = ", ".join(f"{_TERMS.get(k, k)} {v:.2f}" for k, v in (*costs.target, *costs.join))
-        n = option.last - option.first
-        short = f' <span class="warn">{n + 1} ph.</span>' if n < most else ""
-        now = ' class="now" aria-selected="true"' if index == options.at else ""
-        rows.append(
-            f'<tr{now} role="option" tabindex="{0 if index == options.at else -1}" data-action="swap" '
-            f'data-value="{index}" title="{_escape(name)}: {_escape(text_of(name))} · {_escape(terms)}">'
-            f"<td>{_escape(name)}{short}</td><td>{_escape(text_of(name))}</td>"
-            f'<td class="num">{costs.target_total:.2f}</td><td class="num">{costs.join_total:.2f}</td></tr>'
-        )
+    rows = [
+        _option_row(i, o, options, text_of(o.unit.recording), at_s(o.unit))
+        for i, o in enumerate(options.options)
+    ]
     n = len(options.options)
     buttons = (
         action_button("step", "Swap", "Alt ↓", "1", disabled=n < 2, title="Let the next one speak here")
@@ -118,13 +160,14 @@ def options_html(options: Options, text_of: Callable[[str], str], pinned: bool) 
         + action_button("ban", "Ban", "B", title="Never use this unit")
         + action_button("hear", "Hear", "H", title="Play the fragment in its own recording")
     )
+    heads = "".join(f'<th class="num" title="{title}">{label}</th>' for label, title in _COLUMNS)
     return (
         f'<section><h3>Alternatives<span class="end">{options.at + 1} of {n}</span></h3>'
-        '<table><colgroup><col style="width:84px"><col><col style="width:44px"><col style="width:40px">'
-        '</colgroup><thead><tr><th>Source</th><th>Sentence</th><th class="num">Target</th>'
-        '<th class="num">Join</th></tr></thead>'
+        '<div class="rows options"><table><colgroup><col><col style="width:36px"><col style="width:44px">'
+        '<col style="width:48px"><col style="width:36px"></colgroup>'
+        f"<thead><tr><th>Source</th>{heads}</tr></thead>"
         '<tbody data-list="options" data-follow role="listbox" aria-label="What could speak this place">'
-        f'{"".join(rows)}</tbody></table><div class="buttons">{buttons}</div></section>'
+        f'{"".join(rows)}</tbody></table></div><div class="buttons">{buttons}</div></section>'
     )
 
 

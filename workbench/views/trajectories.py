@@ -24,6 +24,8 @@ from workbench.views.controls import Controls
 
 __all__ = ["LIPS", "SPEEDS", "Trajectories", "signal_overlay", "source_columns"]
 
+NOTE_FIRST_MS = 40
+"""Wait before plots are made, so that the page says so first."""
 LIPS, SPEEDS = "Lips and jaw", "Velocities of lips and jaw"
 
 
@@ -67,27 +69,30 @@ def signal_overlay(result: Result, signal: Signal, speed: bool, theme: str) -> h
     )
 
 
-def _style(theme: str) -> Any:
-    """Return a hook that gives a Bokeh figure the colours and the type of the tokens."""
+def _colours(theme: str) -> list[dict[str, str]]:
+    """Return the colours of each element of :func:`signal_overlay` in order, by what they fill."""
+    t = tokens(theme)
+    acc, nat = t.colours["acc"], t.colours["nat"]
+    sources = [{"line_color": colour} for colour in t.sources.values()]
+    return [{"fill_color": nat}, {"line_color": nat}, *sources, {"line_color": acc}, {"fill_color": acc}]
+
+
+def restyle(figure: Any, theme: str) -> None:
+    """Give a Bokeh figure the colours and the type of the tokens."""
     t = tokens(theme)
     c = t.colours
-
-    def apply(plot: Any, element: Any) -> None:
-        figure = plot.state
-        figure.background_fill_color, figure.border_fill_color = c["sunk"], c["panel"]
-        figure.outline_line_color = c["line"]
-        figure.toolbar.logo = None
-        for axis in (*figure.xaxis, *figure.yaxis):
-            axis.axis_label_text_color = axis.major_label_text_color = c["ink2"]
-            axis.axis_line_color = axis.major_tick_line_color = c["line"]
-            axis.minor_tick_line_color = None
-            axis.axis_label_text_font_style = "normal"
-            axis.axis_label_text_font = axis.major_label_text_font = t.family
-            axis.axis_label_text_font_size = axis.major_label_text_font_size = "10px"
-        for grid in (*figure.xgrid, *figure.ygrid):
-            grid.grid_line_color = c["line2"]
-
-    return apply
+    figure.background_fill_color, figure.border_fill_color = c["sunk"], c["panel"]
+    figure.outline_line_color = c["line"]
+    figure.toolbar.logo = None
+    for axis in (*figure.xaxis, *figure.yaxis):
+        axis.axis_label_text_color = axis.major_label_text_color = c["ink2"]
+        axis.axis_line_color = axis.major_tick_line_color = c["line"]
+        axis.minor_tick_line_color = None
+        axis.axis_label_text_font_style = "normal"
+        axis.axis_label_text_font = axis.major_label_text_font = t.family
+        axis.axis_label_text_font_size = axis.major_label_text_font_size = "10px"
+    for grid in (*figure.xgrid, *figure.ygrid):
+        grid.grid_line_color = c["line2"]
 
 
 class Trajectories(pn.viewable.Viewer):
@@ -106,6 +111,7 @@ class Trajectories(pn.viewable.Viewer):
         self._shown = False
         self._drawn: Result | None = None
         self._sources: dict[Signal, list[Any]] = {}
+        self._plots: dict[Signal, Any] = {}
         super().__init__(**params)
         import panel_material_ui as pmui
 
@@ -122,7 +128,8 @@ class Trajectories(pn.viewable.Viewer):
         self.what.param.watch(self._build, "value")
         self._place = pn.Column(sizing_mode="stretch_both", margin=0)
         session.param.watch(self._update, "result")
-        session.param.watch(self._build, ["theme", "corpus"])
+        session.param.watch(self._build, "corpus")
+        session.param.watch(self._theme, "theme")
 
     @property
     def shown(self) -> bool:
@@ -132,7 +139,10 @@ class Trajectories(pn.viewable.Viewer):
     @shown.setter
     def shown(self, shown: bool) -> None:
         self._shown = shown
-        if shown:
+        doc = pn.state.curdoc
+        if shown and doc is not None and doc.session_context is not None:
+            doc.add_timeout_callback(self._build, NOTE_FIRST_MS)
+        elif shown:
             self._build()
 
     def _signals(self, result: Result) -> tuple[list[Signal], bool]:
@@ -142,7 +152,7 @@ class Trajectories(pn.viewable.Viewer):
         return list(signals_of(names)), self.what.value == SPEEDS
 
     def _build(self, *events: Any) -> None:
-        """Make the plots anew: other signals, another theme."""
+        """Make the plots anew: other signals, another corpus."""
         result = self._session.result
         if not self._shown or result is None:
             return
@@ -152,7 +162,7 @@ class Trajectories(pn.viewable.Viewer):
         hv.extension("bokeh")
         signals, speed = self._signals(result)
         theme = self._session.theme
-        self._sources = {}
+        self._sources, self._plots = {}, {}
         plots = []
         for index, signal in enumerate(signals):
             last = index == len(signals) - 1
@@ -167,7 +177,7 @@ class Trajectories(pn.viewable.Viewer):
                         ylabel=f"{signal.label}, {'mm/s' if speed else 'mm'}",
                         yticks=4,
                         show_legend=False,
-                        hooks=[_style(theme), self._collect(signal)],
+                        hooks=[lambda plot, element: restyle(plot.state, theme), self._collect(signal)],
                         default_tools=["xwheel_zoom", "xpan", "reset"],
                         active_tools=["xwheel_zoom", "xpan"],
                         toolbar=None,
@@ -185,9 +195,19 @@ class Trajectories(pn.viewable.Viewer):
         """Return a hook that keeps the data sources of a plot: new values go there, nothing is made anew."""
 
         def keep(plot: Any, element: Any) -> None:
+            self._plots[signal] = plot
             self._sources[signal] = [part.handles["source"] for part in plot.subplots.values()]
 
         return keep
+
+    def _theme(self, event: Any) -> None:
+        """Give the plots that are there the colours of another theme: to make them anew takes seconds."""
+        for plot in self._plots.values():
+            restyle(plot.state, event.new)
+            for part, colours in zip(plot.subplots.values(), _colours(event.new), strict=True):
+                part.handles["glyph"].update(**colours)
+        for pane in self._place:
+            pane.theme = event.new
 
     def _update(self, *events: Any) -> None:
         result = self._session.result

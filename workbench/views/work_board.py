@@ -8,6 +8,7 @@ from typing import Any
 
 import panel as pn
 
+from corpus_tools.core import counted
 from corpus_tools.synthesis import curve_through
 from workbench.actions import swap_to
 from workbench.state import (
@@ -66,7 +67,7 @@ class BlendBoard(pn.viewable.Viewer):
         self.mode = preset_buttons(controls, "How fragments are joined", "mode", _MODES)
         self.mode.param.update(sizing_mode=None, width=170)
         self.overlap = slider(
-            controls, "Longest overlap, s", "overlap_s", (0.0, 0.3), step=0.005, format="0.000"
+            controls, "Longest overlap, ms", "overlap_s", (0.0, 300.0), factor=1000.0, step=5.0, format="0"
         )
         self.shape = slider(
             controls, "Crossover early – late", "shape", (-1.0, 1.0), step=0.02, format="0.00"
@@ -237,8 +238,8 @@ class BlendBoard(pn.viewable.Viewer):
         n = len(result.selection.chosen)
         self.board.param.update(
             head_text=head_text(result),
-            lane_text=f"{result.selection.method} · {n} fragment{'s' * (n != 1)} · "
-            f"{n - 1} join{'s' * (n != 2)} · cost {result.selection.total_cost:.2f}",
+            lane_text=f"{result.selection.method} · {counted(n, 'fragment')} · "
+            f"{counted(n - 1, 'join')} · cost {result.selection.total_cost:.2f}",
             held_out_text=f"recording {result.request.sentence} held out" if result.request.exclude else "",
             warning=missing_text(result),
         )

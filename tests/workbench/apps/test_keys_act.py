@@ -8,7 +8,7 @@ from workbench.state import key_table
 from workbench.views.settings_panel import PRESETS
 from workbench.views.theme import FRONTEND
 
-IN_SHELL = {"help", "curve"}
+IN_SHELL = {"help", "curve", "overlap"}
 
 
 def in_lane():

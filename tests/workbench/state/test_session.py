@@ -299,7 +299,7 @@ def test_an_unknown_sentence_is_named(desk_of, corpus_folder):
 def test_export_without_a_corpus_says_what_to_do(desk_of, tmp_path):
     desk, _ = desk_of()
     said = []
-    desk.export(tmp_path / "x.toml", lambda kind, text: said.append((kind, text)))
+    desk.export(tmp_path / "x.toml", lambda kind, text, where: said.append((kind, text)))
     assert said[0][0] == "err"
     assert "open a corpus" in said[0][1]
     assert list(tmp_path.iterdir()) == []

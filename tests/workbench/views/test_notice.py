@@ -1,5 +1,7 @@
 """Notices and the inspector escape what comes from files, and always stand beside a sign."""
 
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -57,7 +59,7 @@ def details(**changes):
 
 def test_inspector_shows_source_costs_join_and_rejected():
     made = details_html(details(), "light")
-    for text in ("a1", "place red", "Fragment 2 of 3", "0.40", "0.60", "120 ms", "1.50 mm", "b2", "1.40 ×"):
+    for text in ("a1", "place red", "Fragment 2 of 3", "0.40", "0.60", "0.120 s", "1.50 mm", "b2", "1.40 ×"):
         assert text in made
     assert "▲ above p95" in made
     assert "✓ natural" in details_html(details(join={**details().join, "ratio": 0.4}), "light")
@@ -70,8 +72,10 @@ def options():
 
 
 def test_alternatives_are_rows_that_act_and_escape_what_files_say():
-    made = options_html(options(), lambda name: f"said in {name}", pinned=True)
+    made = options_html(options(), lambda name: f"said in {name}", True, lambda unit: 0.1 * unit.first)
     assert "<img" not in made
+    assert re.findall(r'<td class="num">([\d.]+)</td>', made)[:2] == ["0.00", "0.40"]
+    assert re.findall(r'<td class="num">([\d.]+)</td>', made)[-1] == "0.20"
     assert made.count('data-action="swap"') == 2
     assert "2 ph." in made
     assert "Unpin" in made

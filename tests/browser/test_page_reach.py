@@ -1,0 +1,96 @@
+"""What the page shows can be reached, read whole and told apart, and what it writes is where it says."""
+
+import itertools
+
+from browser.paged import drawn, lane, settled, until
+
+from corpus_tools.config import load_config
+
+
+def test_compare_and_history_are_in_view_and_settings_fold_out(browser_page, served):
+    """At 1440 x 900 nothing of the inspector has to be scrolled to, with a join selected and A beside B."""
+    session = drawn(browser_page, served)
+    browser_page.keyboard.press("l")
+    until(browser_page, lambda: session.selected == 1)
+    browser_page.keyboard.press("1")
+    settled(browser_page, session)
+    until(browser_page, lambda: session.other is not None)
+    inspector = browser_page.locator(".inspector > .scroll")
+    row = browser_page.get_by_role("listbox", name="States of this session").get_by_role("option").first
+    row.wait_for()
+
+    def in_view(part):
+        box, around = part.bounding_box(), inspector.bounding_box()
+        bottom = around["y"] + around["height"]
+        return box is not None and around["y"] <= box["y"] <= box["y"] + box["height"] <= bottom
+
+    for part in (browser_page.get_by_role("button", name="Keep as A"), row):
+        until(browser_page, lambda part=part: in_view(part), 5000)
+    assert inspector.evaluate("e => e.scrollTop") == 0
+    method = browser_page.get_by_label("Method")
+    assert method.count() == 0 or not method.first.is_visible()
+    browser_page.get_by_role("button", name="Settings").click()
+    browser_page.get_by_label("Method").first.wait_for()
+    browser_page.get_by_role("button", name="Settings").click()
+    browser_page.get_by_label("Method").first.wait_for(state="hidden")
+
+
+def test_every_join_in_view_has_a_badge_and_w_goes_to_the_overlap(browser_page, served):
+    session = drawn(browser_page, served)
+    until(browser_page, lambda: lane(browser_page).evaluate("c => c.vsw.state.badges?.length > 0"))
+    badges = lane(browser_page).evaluate("c => c.vsw.state.badges.map(({left, w}) => [left, w])")
+    assert len(badges) == len(session.result.trajectory.joins)
+    assert all(a + w < b for (a, w), (b, _) in itertools.pairwise(badges))
+    inside = lane(browser_page).evaluate("c => [c.vsw.state.box.left, c.vsw.state.box.right]")
+    assert badges[0][0] >= inside[0] - 0.01
+    assert sum(badges[-1]) <= inside[1] + 0.01
+
+    browser_page.keyboard.press("w")
+    browser_page.keyboard.press("ArrowLeft")
+    until(browser_page, lambda: session.overlap_s == 0.115)
+    browser_page.keyboard.press("2")  # letters and digits still act
+    until(browser_page, lambda: session.weighting != "smootherstep")
+
+
+def test_an_export_goes_beside_the_corpus_and_its_line_is_copied_whole(browser_page, watched, served):
+    session = drawn(browser_page, served)
+    watched[0].grant_permissions(["clipboard-read", "clipboard-write"])
+    field = browser_page.get_by_label("Config file")
+    assert field.input_value() == str(served[2] / "exports" / "blend.toml")  # the root of the server
+    field.fill("mine")
+    browser_page.keyboard.press("Tab")
+    browser_page.get_by_role("button", name="Export").click()
+    browser_page.get_by_text(f"Config written: {served[2] / 'exports' / 'mine.toml'}").wait_for()
+    assert load_config(served[2] / "exports" / "mine.toml").values() == session.config.values()
+    line = browser_page.get_by_label("Command that replays it")
+    assert line.evaluate("e => e.scrollHeight <= e.clientHeight")
+    browser_page.get_by_role("button", name="Copy", exact=True).click()
+    browser_page.get_by_role("button", name="Copied").wait_for()
+    assert browser_page.evaluate("navigator.clipboard.readText()") == line.input_value()
+    browser_page.get_by_role("button", name="Put this away").click()
+    line.wait_for(state="detached")
+
+
+def test_trajectories_say_that_they_are_drawn_and_follow_the_theme(browser_page, served):
+    drawn(browser_page, served)
+    note = browser_page.get_by_text("Drawing the trajectories")
+    browser_page.keyboard.press("v")
+    note.wait_for()
+    browser_page.locator(".slot.curves .bk-Canvas").first.wait_for()
+    ground = """() => {
+      const deep = (root, test) => {
+        for (const e of root.querySelectorAll("*")) {
+          if (test(e)) return e;
+          const found = e.shadowRoot && deep(e.shadowRoot, test);
+          if (found) return found;
+        }
+        return null;
+      };
+      const plot = deep(document, (e) => e.classList.contains("bk-Canvas"));
+      const canvas = deep(plot.shadowRoot ?? plot, (e) => e.tagName === "CANVAS");
+      return [...canvas.getContext("2d").getImageData(3, 3, 1, 1).data];
+    }"""
+    until(browser_page, lambda: browser_page.evaluate(ground)[3] == 255)
+    seen = browser_page.evaluate(ground)
+    browser_page.keyboard.press("t")
+    until(browser_page, lambda: browser_page.evaluate(ground) != seen, 3000)

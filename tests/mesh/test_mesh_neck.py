@@ -1,0 +1,34 @@
+"""The neck of a head in pictures: a level edge below the face, and nothing else moved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from corpus_tools.mesh import CHARACTERS, bundled_head, level_neck, neck_rim
+
+
+@pytest.mark.parametrize("name", list(CHARACTERS))
+def test_only_the_rim_moves_and_straight_down_to_one_level(name):
+    head = bundled_head(name)
+    drawn, rim = level_neck(head), neck_rim(head)
+    moved = drawn.vertices_mm - head.vertices_mm
+    rest = np.setdiff1d(np.arange(head.n_vertices), rim)
+    assert len(rim) > 20
+    assert not moved[rest].any()
+    assert not moved[:, [0, 2]].any()
+    assert (moved[rim, 1] < 0).all()
+    assert np.ptp(drawn.vertices_mm[rim, 1]) < 1e-9
+    assert drawn.vertices_mm[rim, 1].max() < drawn.vertices_mm[rest, 1].min()
+    assert not set(rim.tolist()) & set(head.markers.values())
+
+
+def test_a_skin_that_is_open_at_the_face_only_stays_as_it_is():
+    head = bundled_head()
+    rim = neck_rim(head)
+    low = head.vertices_mm[rim, 1].max() + 30.0  # cut above the chin: the edge runs through the face
+    kept = (head.vertices_mm[head.faces][:, :, 1] > low).all(axis=1)
+    cut = replace(head, faces=head.faces[kept])
+    assert len(neck_rim(cut)) == 0 or cut.vertices_mm[neck_rim(cut), 1].max() < low + 60.0
+    bare = replace(head, markers={})
+    assert level_neck(bare) is bare
