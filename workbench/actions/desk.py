@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,9 @@ from workbench.actions.jobs import Job, LatestJob
 from workbench.state import EDITABLE, Effects, Result, Session, Stages, compute_effects
 
 __all__ = ["Desk"]
+
+SHOWN_EVERY_S = 0.3
+"""So often lane and plots follow a drag (our choice): the head goes first."""
 
 
 class Desk:
@@ -40,7 +44,10 @@ class Desk:
         self._opening: LatestJob[OpenCorpus] = LatestJob(
             deliver, self._opened, self._not_opened, self._progress
         )
-        self._deliver, self._newest = deliver, 0
+        self._moved: tuple[int, Result] | None = None
+        self._shown_s = 0.0
+        self.after_head: Callable[[Callable[[], None]], None] = deliver
+        """Runs the newest of some actions when the head has moved, or does not move."""
         self._results: LatestJob[Result] = LatestJob(
             deliver, self._arrived, self._refused, idle=lambda: deliver(self._rested)
         )
@@ -121,21 +128,26 @@ class Desk:
         self.session.opening_failed(sentence)
 
     def _arrived(self, number: int, result: Result) -> None:
-        """Move the head at once; what else there is to show of a result has a turn of its own.
-
-        In a drag only the newest result has that turn: the head never waits for numbers that the next step
-        replaces.
-        """
+        """Move the head at once; what else there is to show of a result waits until the head is drawn."""
         if self.session.move(number, result):
-            self._newest = number
-            self._deliver(lambda: self._show(number, result))
+            self._moved = (number, result)
+            self.after_head(self._show)
 
-    def _show(self, number: int, result: Result) -> None:
-        if number == self._newest:
-            self.session.accept(number, result)
+    def _show(self) -> None:
+        """Show the numbers of the newest result; while the next is under way only now and then."""
+        now_s = time.monotonic()
+        if self._moved is None or (self._results.busy and now_s - self._shown_s < SHOWN_EVERY_S):
+            return
+        self._shown_s = now_s
+        self.session.accept(*self._moved)
 
     def _rested(self) -> None:
-        self.session.working = False
+        self.after_head(self._settle)
+
+    def _settle(self) -> None:
+        if not self._results.busy:
+            self._show()
+            self.session.working = False
 
     def _refused(self, number: int, sentence: str) -> None:
         self.session.refuse(number, sentence)

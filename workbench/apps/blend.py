@@ -26,6 +26,7 @@ from workbench.views.bar import AppBar
 from workbench.views.controls import Controls
 from workbench.views.export_box import ExportBox
 from workbench.views.fragment_inspector import FragmentInspector
+from workbench.views.latest import AfterPainted
 from workbench.views.settings_panel import PRESETS, SettingsPanel
 from workbench.views.shell import Shell
 from workbench.views.transport import Transport
@@ -92,6 +93,9 @@ class BlendPage:
         self.bar = AppBar(self.session, self.controls, on_corpus=lambda: self.show("corpus"))
         self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
         self.board = BlendBoard(self.session, self.controls, clock, self.desk.cancel)
+        head = self.board.face.mesh_view
+        self.desk.after_head = after_head = AfterPainted(head.line, self._gate)
+        head.param.watch(lambda event: after_head.painted(), "acknowledged")
         self.inspector = FragmentInspector(self.session, self._hear)
         self._export_folder = export_folder
         self.export = ExportBox(self.controls, on_export=self._export)

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["LatestWins"]
+__all__ = ["AfterPainted", "LatestWins"]
 
 
 class LatestWins:
@@ -52,6 +52,11 @@ class LatestWins:
         return self._number
 
     @property
+    def flying(self) -> bool:
+        """Whether a change is on its way: somebody listens and has not acknowledged it yet."""
+        return bool(self._flying)
+
+    @property
     def waiting(self) -> bool:
         """Whether a change waits for an acknowledgement of the one before."""
         return bool(self._waiting)
@@ -85,3 +90,45 @@ class LatestWins:
             if self._listening:
                 self._flying, self._since_s = self._number, self._now()
             self._send(self._number, key, change)
+
+
+class AfterPainted:
+    """Lets what can wait give way to a picture: runs an action once the picture has been painted.
+
+    Parameters
+    ----------
+    line : LatestWins
+        Changes of the picture.
+    deliver : callable
+        ``deliver(action)`` runs ``action()`` where the page's parameters may be set.
+    patience_s : float, s
+        So long an action waits at most (our choice: a hidden tab paints nothing).
+    """
+
+    def __init__(
+        self,
+        line: LatestWins,
+        deliver: Callable[[Callable[[], None]], None],
+        patience_s: float = 0.3,
+    ) -> None:
+        self._line, self._deliver, self._patience_s = line, deliver, patience_s
+        self._lock = threading.Lock()
+        self._action: Callable[[], None] | None = None
+
+    def __call__(self, action: Callable[[], None]) -> None:
+        """Run an action when nothing is on its way; of those that wait, only the newest."""
+        with self._lock:
+            waits, self._action = self._action is not None, action
+        if not self._line.flying:
+            self.painted()
+        elif not waits:
+            timer = threading.Timer(self._patience_s, self.painted)
+            timer.daemon = True
+            timer.start()
+
+    def painted(self) -> None:
+        """Run what waits, in a turn of its own."""
+        with self._lock:
+            action, self._action = self._action, None
+        if action is not None:
+            self._deliver(action)

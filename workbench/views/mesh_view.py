@@ -80,6 +80,11 @@ class MeshView(pn.custom.JSComponent):
             self.show_scene(scene, bases)
 
     @property
+    def line(self) -> LatestWins:
+        """What is on its way to the browser, and what waits."""
+        return self._line
+
+    @property
     def dropped(self) -> int:
         """Changes that a later one replaced before they were sent."""
         return self._line.dropped

@@ -245,6 +245,23 @@ def test_a_visit_from_opening_to_a_new_curve(desk_of, corpus_folder):
     assert not np.array_equal(session.result.animation.targets_mm, before.animation.targets_mm)
 
 
+def test_in_a_drag_the_head_goes_first_and_the_last_numbers_are_shown(desk_of, corpus_folder):
+    desk, loop = desk_of()
+    session, order = desk.session, []
+    desk.open(corpus_folder)
+    loop.until(lambda: session.result is not None and not session.working)
+    waiting = []
+    desk.after_head = lambda action: waiting.append(action)
+    session.param.watch(lambda *events: order.extend(e.name for e in events), ["moving", "result"])
+    session.shape = 0.3
+    loop.until(lambda: order == ["moving"] and len(waiting) > 1)
+    assert session.working
+    waiting[-1]()  # of those that wait, only the newest is run
+    assert order[-1] == "result"
+    assert session.result is session.moving
+    assert not session.working
+
+
 def test_two_sessions_share_the_corpus_and_nothing_else(desk_of, corpus_folder):
     (one, loop_one), (two, loop_two) = desk_of(), desk_of()
     one.open(corpus_folder)

@@ -1,9 +1,11 @@
 """Back-pressure between Python and the browser, driven by a browser that acknowledges when it likes."""
 
+import threading
+
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workbench.views.latest import LatestWins
+from workbench.views.latest import AfterPainted, LatestWins
 
 
 class Line:
@@ -94,3 +96,26 @@ def test_the_last_offer_always_arrives_and_never_two_fly(steps):
     assert not made.line.waiting
     assert (made.sent[-1][2] if made.sent else 0) == offered
     assert made.line.dropped + len(made.sent) == offered
+
+
+def test_what_can_wait_runs_once_the_picture_is_painted_and_only_the_newest():
+    made, done = Line(), []
+    after = AfterPainted(made.line, lambda action: action(), patience_s=30)
+    after(lambda: done.append("nobody paints"))
+    made.line.ready()
+    made.line.offer("motion", 0)
+    after(lambda: done.append("old"))
+    after(lambda: done.append("new"))
+    assert done == ["nobody paints"]
+    made.line.acknowledge(1)
+    after.painted()
+    after.painted()
+    assert done == ["nobody paints", "new"]
+
+
+def test_what_waits_for_a_tab_that_paints_nothing_runs_all_the_same():
+    made, done = Line(), threading.Event()
+    made.line.ready()
+    made.line.offer("motion", 0)
+    AfterPainted(made.line, lambda action: action(), patience_s=0.05)(done.set)
+    assert done.wait(5)
