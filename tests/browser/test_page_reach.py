@@ -94,3 +94,15 @@ def test_trajectories_say_that_they_are_drawn_and_follow_the_theme(browser_page,
     seen = browser_page.evaluate(ground)
     browser_page.keyboard.press("t")
     until(browser_page, lambda: browser_page.evaluate(ground) != seen, 3000)
+
+
+def test_the_corpus_page_says_what_is_there_and_a_row_is_spoken(browser_page, served):
+    session = drawn(browser_page, served)
+    browser_page.get_by_role("button", name="Corpus", exact=True).click()
+    browser_page.get_by_role("img", name="diphones recorded").wait_for()
+    rows = browser_page.locator('tr[data-action="speak"]')
+    assert rows.count() == len(session.corpus.names)
+    name = rows.nth(2).get_attribute("data-value")
+    rows.nth(2).click()
+    until(browser_page, lambda: session.sentence == name)
+    lane(browser_page).wait_for()

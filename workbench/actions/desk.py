@@ -12,7 +12,16 @@ from corpus_tools.pipeline import OpenCorpus, corpus_provenance
 from workbench.actions.corpora import CorpusCache
 from workbench.actions.export import export_config, replay_command
 from workbench.actions.jobs import Job, LatestJob
-from workbench.state import EDITABLE, Effects, Result, Session, Stages, compute_effects
+from workbench.state import (
+    EDITABLE,
+    CorpusFacts,
+    Effects,
+    Result,
+    Session,
+    Stages,
+    compute_effects,
+    corpus_facts,
+)
 
 __all__ = ["Desk"]
 
@@ -41,6 +50,7 @@ class Desk:
         self.cache = cache
         self.stages = Stages()
         self._wanted_sentence: str | None = None
+        self._check_of: OpenCorpus | None = None
         self._opening: LatestJob[OpenCorpus] = LatestJob(
             deliver, self._opened, self._not_opened, self._progress
         )
@@ -56,6 +66,9 @@ class Desk:
             deliver, self._found_recorded, lambda number, sentence: None
         )
         self._others: LatestJob[Result] = LatestJob(deliver, self._compared, lambda number, sentence: None)
+        self._checks: LatestJob[CorpusFacts] = LatestJob(
+            deliver, self._checked, self._not_checked, self._checking
+        )
         self._exports: LatestJob[Path] = LatestJob(deliver, self._exported, self._not_exported)
         self._on_export: Callable[[str, str, str], None] = lambda kind, text, where: None
         session.param.watch(self._recompute, ["corpus", *EDITABLE])
@@ -107,6 +120,7 @@ class Desk:
             self._effects,
             self._recordings,
             self._others,
+            self._checks,
             self._exports,
         ):
             jobs.close()
@@ -197,6 +211,26 @@ class Desk:
         wanted = self.session.request_of_a()
         if wanted is not None and wanted.same_target(other.request) and wanted.config == other.request.config:
             self.session.other = other
+
+    def check(self) -> None:
+        """Check the open corpus in the background, unless that was done, for `session.facts`."""
+        session, corpus = self.session, self.session.corpus
+        if corpus is None or self._check_of is corpus:
+            return
+        self._check_of = corpus
+        session.param.update(facts=None, check_doing="", check_trouble="")
+        self._checks.submit(lambda job: corpus_facts(corpus, job.progress), cancel_running=True)
+
+    def _checking(self, number: int, fraction: float, what: str) -> None:
+        self.session.check_doing = f"{what}, {100 * fraction:.0f} %"
+
+    def _checked(self, number: int, facts: CorpusFacts) -> None:
+        if facts.corpus is self.session.corpus:
+            self.session.facts = facts
+
+    def _not_checked(self, number: int, sentence: str) -> None:
+        self._check_of = None
+        self.session.check_trouble = sentence
 
     def export(
         self, path: str | Path, done: Callable[[str, str, str], None], beside: Path | None = None

@@ -106,6 +106,7 @@ class BlendPage:
             on_demo=self.open_demo,
             on_cancel=self.desk.cancel,
             on_back=lambda: self.show("blend"),
+            on_speak=self._speak,
         )
         self.shell = Shell(
             on_key=lambda action, index: self._gate.asked(lambda: self._key(action, index)),
@@ -154,6 +155,12 @@ class BlendPage:
         have = self.session.corpus is not None or self.session.status == "opening"
         blend = dashboard == "blend" and have
         self.shell.param.update(starting=not blend, active="blend" if blend else "corpus")
+        if not blend:
+            self.desk.check()
+
+    def _speak(self, recording: str) -> None:
+        self.session.param.update(target_kind="recording", sentence=recording)
+        self.show("blend")
 
     def open(self, folder: Path) -> None:
         """Open a corpus, and show the dashboard to begin with meanwhile."""

@@ -1,5 +1,6 @@
 """What a person works on, without Panel: session, stages, tokens, keys, and data for the views."""
 
+from workbench.state.corpus_facts import CorpusFacts, RecordingRow, corpus_facts, recording_rows
 from workbench.state.editing import EDITABLE, SETTINGS, TARGETS, default_config
 from workbench.state.effects import OVERLAPS_S, Effects, compute_effects, effect_data, signal_band
 from workbench.state.history import Entry, History, change_text
@@ -31,6 +32,7 @@ __all__ = [
     "STATUSES",
     "TARGETS",
     "THEMES",
+    "CorpusFacts",
     "Effects",
     "Entry",
     "FragmentDetails",
@@ -38,6 +40,7 @@ __all__ = [
     "KeyBinding",
     "Option",
     "Options",
+    "RecordingRow",
     "Request",
     "Result",
     "Session",
@@ -48,6 +51,7 @@ __all__ = [
     "band_data",
     "change_text",
     "compute_effects",
+    "corpus_facts",
     "css_variables",
     "default_config",
     "effect_data",
@@ -62,6 +66,7 @@ __all__ = [
     "phone_rows",
     "pin_at",
     "read_tokens",
+    "recording_rows",
     "score",
     "signal_band",
     "signal_data",

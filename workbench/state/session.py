@@ -9,6 +9,7 @@ import param
 
 from corpus_tools.config import ConfigBase, config_with
 from corpus_tools.pipeline import OpenCorpus
+from workbench.state.corpus_facts import CorpusFacts
 from workbench.state.editing import SETTINGS, Editing
 from workbench.state.effects import Effects
 from workbench.state.picks import fragment_at
@@ -50,6 +51,12 @@ class Session(Editing):
         class_=Result, allow_None=True, default=None, doc="The capture's own motion."
     )
     other = param.ClassSelector(class_=Result, allow_None=True, default=None, doc="Of setting A, if another.")
+
+    facts = param.ClassSelector(
+        class_=CorpusFacts, allow_None=True, default=None, doc="What a check of the corpus found."
+    )
+    check_doing = param.String(default="", doc="What the check of the corpus is at.")
+    check_trouble = param.String(default="", doc="Why the corpus could not be checked.")
 
     def __init__(self, base: ConfigBase | None = None, **values: Any) -> None:
         self._accepted = 0

@@ -10,6 +10,7 @@ import panel as pn
 
 from workbench.state import Session
 from workbench.views.controls import Controls, button, text_field
+from workbench.views.corpus_page import CorpusOverview
 from workbench.views.notice import notice_html
 from workbench.views.theme import style_sheet
 
@@ -40,7 +41,9 @@ def _help_html() -> str:
     return (
         '<div class="vsw-html welcome"><p>Your own recordings (marker motion, sound, phone labels) become a '
         "corpus with one line in a terminal; <code>{id}</code> stands for the name of a recording:</p>"
-        f"<pre>{html.escape(_INIT)}</pre></div>"
+        f"<pre>{html.escape(_INIT)}</pre>"
+        "<p>Then <code>corpus-tools check WORK</code> says what to mend; open WORK in the field above."
+        " Without recordings, start with the simulated corpus.</p></div>"
     )
 
 
@@ -67,6 +70,8 @@ class Welcome(pn.viewable.Viewer):
         Without arguments.
     on_back : callable
         Back to the open corpus.
+    on_speak : callable
+        ``on_speak(recording)``: shows one on the blend page.
     """
 
     def __init__(
@@ -77,11 +82,13 @@ class Welcome(pn.viewable.Viewer):
         on_demo: Callable[[], None],
         on_cancel: Callable[[], None],
         on_back: Callable[[], None],
+        on_speak: Callable[[str], None],
         **params: Any,
     ) -> None:
         self._session, self._on_open = session, on_open
         super().__init__(**params)
         sheets = [style_sheet()]
+        self.overview = CorpusOverview(session, on_speak)
         self._title = pn.pane.HTML(stylesheets=sheets, sizing_mode="stretch_width", margin=0)
         self._state = pn.pane.HTML(stylesheets=sheets, sizing_mode="stretch_width", margin=(8, 0))
         self.path = text_field(
@@ -107,7 +114,7 @@ class Welcome(pn.viewable.Viewer):
             pn.Row(self.demo, self.back, margin=0),
             help_,
             width=640,
-            margin=(48, 0, 0, 48),
+            margin=(24, 0, 24, 24),
         )
         session.param.watch(self._update, ["status", "trouble", "fraction", "doing", "corpus"])
         self._update()
@@ -131,4 +138,6 @@ class Welcome(pn.viewable.Viewer):
         self.back.visible = s.corpus is not None and not opening
 
     def __panel__(self) -> Any:
-        return pn.Column(self._panel, sizing_mode="stretch_both", scroll="y-auto", margin=0)
+        return pn.Column(
+            self.overview.pane, self._panel, sizing_mode="stretch_both", scroll="y-auto", margin=0
+        )

@@ -1,0 +1,47 @@
+"""The corpus page: what a check found, worst first, and nothing of it invented before the check."""
+
+import re
+
+from corpus_tools.pipeline import check_corpus
+from workbench.state import Session, corpus_facts, recording_rows
+from workbench.views.corpus_page import overview_html
+from workbench.views.diphone_map import diphone_map_svg
+
+
+def test_facts_are_those_of_check_and_coverage(opened, corpus_folder):
+    before = recording_rows(opened)
+    assert {r.name for r in before} == {*opened.names, *opened.skipped}
+    assert all(r.problems is None and r.gap_frames is None for r in before if r.usable)
+    steps = []
+    facts = corpus_facts(opened, lambda fraction, what: steps.append(fraction))
+    assert steps == sorted(steps)
+    assert facts.health == check_corpus(corpus_folder)
+    rows = recording_rows(opened, facts)
+    known = {r["id"]: r for r in facts.health["recordings"]}
+    for row in rows:
+        assert row.problems == tuple(known[row.name]["problems"])
+        assert row.gap_frames == sum(b - a + 1 for a, b in known[row.name]["gaps"])
+    counts = [len(r.problems) for r in rows]
+    assert counts == sorted(counts, reverse=True)
+    assert facts.cover["n_diphones"] == sum(len(r.utterance.labels) - 1 for r in opened.recordings)
+
+
+def test_the_page_shows_tallies_rows_and_every_diphone(opened):
+    session = Session()
+    assert overview_html(session) == ""
+    session.opened(opened)
+    assert "Checking" in overview_html(session)
+    session.facts = corpus_facts(opened, lambda fraction, what: None)
+    made = overview_html(session)
+    assert "Checking" not in made
+    assert made.count('data-action="speak"') == len(opened.names)
+    assert made.count("<rect") == session.facts.cover["n_diphone_types"]
+    session.param.update(facts=None, check_trouble="<img src=x>")
+    assert "<img" not in overview_html(session)
+
+
+def test_the_map_marks_what_was_seldom_recorded():
+    made = diphone_map_svg({"A-B": 1, "B-A": 40, "<-B": 2})
+    assert len(re.findall('class="few"', made)) == 2
+    assert "&lt;-B: 2 recorded" in made
+    assert diphone_map_svg({}).count("<rect") == 0
