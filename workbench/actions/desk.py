@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -24,9 +23,6 @@ from workbench.state import (
 )
 
 __all__ = ["Desk"]
-
-SHOWN_EVERY_S = 0.3
-"""So often lane and plots follow a drag (our choice): the head goes first."""
 
 
 class Desk:
@@ -54,10 +50,10 @@ class Desk:
         self._opening: LatestJob[OpenCorpus] = LatestJob(
             deliver, self._opened, self._not_opened, self._progress
         )
+        self._deliver = deliver
         self._moved: tuple[int, Result] | None = None
-        self._shown_s = 0.0
         self.after_head: Callable[[Callable[[], None]], None] = deliver
-        """Runs the newest of some actions when the head has moved, or does not move."""
+        """Runs the newest of some actions when the head has moved and the drag pauses."""
         self._results: LatestJob[Result] = LatestJob(
             deliver, self._arrived, self._refused, idle=lambda: deliver(self._rested)
         )
@@ -143,25 +139,20 @@ class Desk:
 
     def _arrived(self, number: int, result: Result) -> None:
         """Move the head at once; what else there is to show of a result waits until the head is drawn."""
-        if self.session.move(number, result):
-            self._moved = (number, result)
-            self.after_head(self._show)
-
-    def _show(self) -> None:
-        """Show the numbers of the newest result; while the next is under way only now and then."""
-        now_s = time.monotonic()
-        if self._moved is None or (self._results.busy and now_s - self._shown_s < SHOWN_EVERY_S):
+        if not self.session.move(number, result):
             return
-        self._shown_s = now_s
-        self.session.accept(*self._moved)
+        self._moved, shown = (number, result), self.session.result
+        follows = shown is not None and shown.request.same_target(result.request)
+        (self.after_head if follows else self._deliver)(self._show)
 
     def _rested(self) -> None:
-        self.after_head(self._settle)
+        self.after_head(self._show)
 
-    def _settle(self) -> None:
-        if not self._results.busy:
-            self._show()
-            self.session.working = False
+    def _show(self) -> None:
+        """Show all there is to show of the newest result; a drag may be at the next one already."""
+        if self._moved is not None:
+            self.session.accept(*self._moved)
+        self.session.working = self._results.busy
 
     def _refused(self, number: int, sentence: str) -> None:
         self.session.refuse(number, sentence)

@@ -93,9 +93,7 @@ class BlendPage:
         self.bar = AppBar(self.session, self.controls, on_corpus=lambda: self.show("corpus"))
         self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
         self.board = BlendBoard(self.session, self.controls, clock, self.desk.cancel)
-        head = self.board.face.mesh_view
-        self.desk.after_head = after_head = AfterPainted(head.line, self._gate)
-        head.param.watch(lambda event: after_head.painted(), "acknowledged")
+        self.desk.after_head = AfterPainted(self.board.face.mesh_view.line, self._gate)
         self.inspector = FragmentInspector(self.session, self._hear)
         self._export_folder = export_folder
         self.export = ExportBox(self.controls, on_export=self._export)

@@ -93,7 +93,10 @@ class LatestWins:
 
 
 class AfterPainted:
-    """Lets what can wait give way to a picture: runs an action once the picture has been painted.
+    """Lets what can wait give way to a picture that follows a drag.
+
+    The newest of some actions runs once the picture has been painted and nobody has asked for another action
+    for a while.
 
     Parameters
     ----------
@@ -101,34 +104,49 @@ class AfterPainted:
         Changes of the picture.
     deliver : callable
         ``deliver(action)`` runs ``action()`` where the page's parameters may be set.
+    quiet_s : float, s
+        So long nobody has asked (our choice: a little more than the time between two steps of a drag).
     patience_s : float, s
-        So long an action waits at most (our choice: a hidden tab paints nothing).
+        So long an action waits at most, in a drag that does not end or for a tab that paints nothing.
     """
 
     def __init__(
         self,
         line: LatestWins,
         deliver: Callable[[Callable[[], None]], None],
-        patience_s: float = 0.3,
+        quiet_s: float = 0.2,
+        patience_s: float = 0.6,
     ) -> None:
-        self._line, self._deliver, self._patience_s = line, deliver, patience_s
+        self._line, self._deliver = line, deliver
+        self._quiet_s, self._patience_s = quiet_s, patience_s
         self._lock = threading.Lock()
         self._action: Callable[[], None] | None = None
+        self._latest_s = self._quiet_from_s = 0.0
 
     def __call__(self, action: Callable[[], None]) -> None:
-        """Run an action when nothing is on its way; of those that wait, only the newest."""
+        """Let an action wait for its time; it replaces one that waits."""
         with self._lock:
+            now_s = time.monotonic()
             waits, self._action = self._action is not None, action
-        if not self._line.flying:
-            self.painted()
-        elif not waits:
-            timer = threading.Timer(self._patience_s, self.painted)
-            timer.daemon = True
-            timer.start()
+            self._quiet_from_s = now_s + self._quiet_s
+            if not waits:
+                self._latest_s = now_s + self._patience_s
+                self._look_after(min(self._quiet_s, self._patience_s))
 
-    def painted(self) -> None:
-        """Run what waits, in a turn of its own."""
+    def _look_after(self, wait_s: float) -> None:
+        timer = threading.Timer(wait_s, self._look)
+        timer.daemon = True
+        timer.start()
+
+    def _look(self) -> None:
+        """Run what waits, or look again when it may be time."""
         with self._lock:
+            now_s = time.monotonic()
+            quiet = now_s >= self._quiet_from_s and not self._line.flying
+            if not quiet and now_s < self._latest_s:
+                again_s = min(max(self._quiet_from_s, now_s + 0.02), self._latest_s)
+                self._look_after(again_s - now_s)
+                return
             action, self._action = self._action, None
         if action is not None:
             self._deliver(action)

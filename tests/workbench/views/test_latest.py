@@ -98,24 +98,44 @@ def test_the_last_offer_always_arrives_and_never_two_fly(steps):
     assert made.line.dropped + len(made.sent) == offered
 
 
+def waits_of(made, **times):
+    done, ran = [], threading.Event()
+
+    def deliver(action):
+        action()
+        ran.set()
+
+    return done, ran, AfterPainted(made.line, deliver, **times)
+
+
 def test_what_can_wait_runs_once_the_picture_is_painted_and_only_the_newest():
-    made, done = Line(), []
-    after = AfterPainted(made.line, lambda action: action(), patience_s=30)
-    after(lambda: done.append("nobody paints"))
+    made = Line()
+    done, ran, after = waits_of(made, quiet_s=0.02, patience_s=30)
     made.line.ready()
     made.line.offer("motion", 0)
     after(lambda: done.append("old"))
     after(lambda: done.append("new"))
-    assert done == ["nobody paints"]
+    assert not ran.wait(0.15)
     made.line.acknowledge(1)
-    after.painted()
-    after.painted()
-    assert done == ["nobody paints", "new"]
+    assert ran.wait(5)
+    assert done == ["new"]
+
+
+def test_it_waits_while_others_are_asked_for_but_not_for_ever():
+    made = Line()
+    done, ran, after = waits_of(made, quiet_s=5.0, patience_s=0.2)
+    for number in range(5):
+        after(lambda number=number: done.append(number))
+    assert done == []
+    assert ran.wait(3)
+    assert done == [4]
 
 
 def test_what_waits_for_a_tab_that_paints_nothing_runs_all_the_same():
-    made, done = Line(), threading.Event()
+    made = Line()
     made.line.ready()
     made.line.offer("motion", 0)
-    AfterPainted(made.line, lambda action: action(), patience_s=0.05)(done.set)
-    assert done.wait(5)
+    done, ran, after = waits_of(made, quiet_s=0.01, patience_s=0.05)
+    after(lambda: done.append("shown"))
+    assert ran.wait(5)
+    assert done == ["shown"]
