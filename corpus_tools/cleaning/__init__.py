@@ -3,7 +3,8 @@
 from corpus_tools.cleaning.bias import PhoneHalves, RecordingBias, holding, phone_halves, recording_bias
 from corpus_tools.cleaning.corpus import CleanedCorpus, clean_captures, neutral_pose
 from corpus_tools.cleaning.face_model import FaceModel, face_model
-from corpus_tools.cleaning.filling import GAP_FILLERS, fill_gaps
+from corpus_tools.cleaning.fillers import GAP_FILLERS
+from corpus_tools.cleaning.filling import fill_gaps
 from corpus_tools.cleaning.gaps import gaps, marker_gaps
 from corpus_tools.cleaning.head_motion import (
     HeadMotion,
@@ -12,6 +13,7 @@ from corpus_tools.cleaning.head_motion import (
     remove_head_motion,
 )
 from corpus_tools.cleaning.kalman import kalman_smooth, measurement_sd_mm, smooth_channels
+from corpus_tools.cleaning.rehearsal import Rehearsals, Trial, rehearse
 
 __all__ = [
     "GAP_FILLERS",
@@ -20,6 +22,8 @@ __all__ = [
     "HeadMotion",
     "PhoneHalves",
     "RecordingBias",
+    "Rehearsals",
+    "Trial",
     "clean_captures",
     "estimate_head_motion",
     "face_model",
@@ -33,6 +37,7 @@ __all__ = [
     "phone_halves",
     "recording_bias",
     "reference_shape",
+    "rehearse",
     "remove_head_motion",
     "smooth_channels",
 ]

@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from corpus_tools.cleaning.face_model import FaceModel, face_model
-from corpus_tools.cleaning.filling import fill_gaps
+from corpus_tools.cleaning.filling import AUTO, fill_gaps
 from corpus_tools.cleaning.head_motion import HeadMotion, reference_shape, remove_head_motion
 from corpus_tools.cleaning.kalman import kalman_smooth
+from corpus_tools.cleaning.rehearsal import REHEARSED, rehearse
 from corpus_tools.core import BoolArray, Capture, FloatArray, MotionError, frozen
 
 __all__ = ["CleanedCorpus", "clean_captures", "neutral_pose"]
@@ -42,7 +43,7 @@ class CleanedCorpus:
 
 def _model(captures: Sequence[Capture], gap_method: str, n_components: int) -> FaceModel | None:
     """Return how the markers move together, when a gap asks for it: markers hidden while others are seen."""
-    if gap_method != "pca-gp":
+    if gap_method not in (AUTO, "pca-gp"):
         return None
     seen: list[BoolArray] = [np.asarray(np.isfinite(c.positions_mm).all(axis=2)) for c in captures]
     if not any((s.any(axis=1) & ~s.all(axis=1)).any() for s in seen):
@@ -64,7 +65,7 @@ def clean_captures(
     cutoff_hz: float = 10.0,
     head_cutoff_mm: float = 1.0,
     iterations: int = 6,
-    gap_method: str = "pca-gp",
+    gap_method: str = AUTO,
     gap_longest_s: float = 1.0,
     gap_doubt_mm: float = 1.0,
     gap_components: int = 24,
@@ -123,11 +124,26 @@ def clean_captures(
         stable.append(still)
         motions.append(motion)
     report(0.7, "filling gaps")
-    model = _model([stable[i] for i in known], gap_method, gap_components)
+    familiar = [stable[i] for i in known]
+    model = _model(familiar, gap_method, gap_components)
+    tried = REHEARSED if gap_method == AUTO else [gap_method]
+    rehearsals = rehearse(
+        familiar,
+        model,
+        [m for m in tried if m != "kalman"],
+        progress=lambda fraction, what: report(0.7 + 0.1 * fraction, what),
+    )
     cleaned, bands = [], []
     for index, still in enumerate(stable):
-        report(0.7 + 0.3 * index / len(captures), "cleaning")
-        filled = fill_gaps(still, gap_method, model=model, longest_s=gap_longest_s, doubt_mm=gap_doubt_mm)
+        report(0.8 + 0.2 * index / len(captures), "cleaning")
+        filled = fill_gaps(
+            still,
+            gap_method,
+            model=model,
+            rehearsals=rehearsals,
+            longest_s=gap_longest_s,
+            doubt_mm=gap_doubt_mm,
+        )
         smooth, band = _smoothed(*filled, cutoff_hz)
         cleaned.append(smooth)
         bands.append(frozen(band))

@@ -75,7 +75,10 @@ class CleaningSettings(Section):
         1.0, ge=0.001, le=20, description="Residual at which a head marker is doubted, mm."
     )
     head_iterations: int = Field(6, ge=1, le=50, description="Reweighting rounds of the head-motion fit.")
-    gap_method: str = Field("pca-gp", description="Gap filling, by name: pca-gp, dct (paper A) or kalman.")
+    gap_method: str = Field(
+        "auto",
+        description="Gap filling: auto (per gap, the best in rehearsal), pca-gp, gp, dct (paper A), kalman.",
+    )
     gap_longest_s: float = Field(1.0, gt=0, le=60, description="Longer gaps are filled but doubtful, s.")
     gap_doubt_mm: float = Field(
         1.0, gt=0, le=100, description="Uncertainty from which a filled sample is doubtful, mm."

@@ -4,11 +4,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
-from corpus_tools.cleaning import GAP_FILLERS, clean_captures, face_model, fill_gaps
+from corpus_tools.cleaning import (
+    GAP_FILLERS,
+    Rehearsals,
+    Trial,
+    clean_captures,
+    face_model,
+    fill_gaps,
+    rehearse,
+)
 from corpus_tools.core import Capture, FrameFlag, InputError
 
 RATE_HZ = 120.0
-METHODS = pytest.mark.parametrize("method", list(GAP_FILLERS))
+METHODS = pytest.mark.parametrize("method", ["auto", *GAP_FILLERS])
 seeds = st.integers(0, 2**31)
 
 
@@ -53,8 +61,8 @@ def rms(a, b):
 @given(seeds)
 def test_what_was_measured_is_not_touched_and_what_was_filled_is_flagged(method, seed):
     rng = np.random.default_rng(seed)
-    _, seen = face(seed, n_frames=240)
-    holes = [(a, a + int(rng.integers(0, 40)), int(rng.integers(30))) for a in rng.integers(0, 200, 4)]
+    _, seen = face(seed, n_frames=240, n_markers=12)
+    holes = [(a, a + int(rng.integers(0, 40)), int(rng.integers(12))) for a in rng.integers(0, 200, 4)]
     holes.append((int(rng.integers(60, 120)), 130, slice(None)))
     hole = holed(seen, holes)
     measured = np.isfinite(hole.positions_mm).all(axis=2)
@@ -71,7 +79,7 @@ def test_what_was_measured_is_not_touched_and_what_was_filled_is_flagged(method,
     np.testing.assert_array_equal(again.positions_mm, filled.positions_mm)
 
 
-@pytest.mark.parametrize("method", ["pca-gp", "dct"])
+@pytest.mark.parametrize("method", ["pca-gp", "gp", "dct"])
 @settings(max_examples=8)
 @given(seeds)
 def test_the_band_grows_into_the_gap(method, seed):
@@ -83,17 +91,27 @@ def test_the_band_grows_into_the_gap(method, seed):
     assert inside[0] < 1.05 * inside.max()
 
 
-def test_the_band_is_as_wide_as_the_errors():
-    ratios = []
-    for seed in range(12):
-        truth, seen = face(seed)
-        filled, sd_mm = fill(holed(seen, [(300, 323, 3)]))
-        ratios.append((filled.positions_mm - truth)[300:324, 3] / sd_mm[300:324, 3, None])
-    assert 0.5 < np.sqrt(np.mean(np.square(ratios))) < 1.8
+@pytest.mark.parametrize("method", ["pca-gp", "gp", "dct"])
+def test_a_band_of_90_percent_holds_90_percent(method):
+    """After rehearsal, in gaps of 6 to 48 frames together."""
+    within = []
+    for seed in range(3):
+        _, seen = face(seed)
+        begins, sizes = 60 + 75 * np.arange(7), [6, 12, 24, 48, 6, 12, 24]
+        holes = [(a, a + n - 1, 3 * k + seed) for k, (a, n) in enumerate(zip(begins, sizes, strict=True))]
+        hole = holed(seen, holes)
+        model = face_model([hole])
+        rehearsals = rehearse([hole], model, [method])
+        filled, sd_mm = fill_gaps(hole, method, model=model, rehearsals=rehearsals)
+        for a, b, marker in holes:
+            rows = slice(a, b + 1)
+            error = filled.positions_mm[rows, marker] - seen[rows, marker]
+            within.append(np.abs(error) <= 1.645 * sd_mm[rows, marker, None])
+    assert 0.85 <= np.concatenate(within).mean() <= 0.95
 
 
 def test_a_gap_of_24_frames_is_filled_as_well_as_the_design_asks():
-    """0.2 mm with the other markers, far below a cubic; cosines alone do not run away."""
+    """0.2 mm with the other markers, far below a cubic; 1.6 mm by cosines alone."""
     found = {"pca-gp": [], "dct": [], "cubic": []}
     for seed in range(10):
         truth, seen = face(seed)
@@ -105,8 +123,54 @@ def test_a_gap_of_24_frames_is_filled_as_well_as_the_design_asks():
             found[method].append(rms(filled.positions_mm[300:324, 3], truth[300:324, 3]))
     means = {name: np.sqrt(np.mean(np.square(values))) for name, values in found.items()}
     assert means["pca-gp"] <= 0.2
-    assert means["pca-gp"] <= 0.25 * means["cubic"]
-    assert means["dct"] <= 1.25 * means["cubic"]
+    assert means["pca-gp"] <= 0.1 * means["cubic"]
+    assert means["dct"] <= 1.6
+    assert means["dct"] <= 0.5 * means["cubic"]
+
+
+def with_gaps_of(length, markers, n_frames=600):
+    _, seen = face(6, n_frames)
+    return holed(seen, [(200, 200 + length - 1, markers)])
+
+
+def test_each_gap_is_filled_by_what_did_best_in_rehearsal():
+    """Others lead where they are seen; where the whole face is hidden nobody can."""
+    told = with_gaps_of(24, 3)
+    chosen = {}
+    for name, hole in (("told", told), ("all", with_gaps_of(24, slice(None)))):
+        model = face_model([hole])
+        filled, _ = fill_gaps(hole, model=model, rehearsals=rehearse([hole], model))
+        chosen[name] = filled.history[-1].as_dict()["gaps"]
+    assert chosen["told"] == "pca-gp 1"
+    assert chosen["all"].startswith(("gp 30", "dct 30"))
+
+
+def test_a_filler_is_replaced_only_when_it_is_beaten_beyond_doubt():
+    usual, rng = np.full(20, 1.0), np.random.default_rng(0)
+    pairs = {
+        "better": usual * rng.uniform(0.5, 0.9, 20),
+        "one stroke of luck": np.r_[1e-6, usual[1:] * 1.05],
+        "the same": usual * rng.uniform(0.8, 1.25, 20),
+    }
+    beats = {name: Trial(errors, 1.0).beats(Trial(usual, 1.0)) for name, errors in pairs.items()}
+    assert beats == {"better": True, "one stroke of luck": False, "the same": False}
+    trials = {(24, True, "pca-gp"): Trial(usual, 1.3), (24, True, "gp"): Trial(pairs["better"], 2.0)}
+    rehearsals = Rehearsals(trials)
+    assert rehearsals.best(26, True) == "gp"
+    assert rehearsals.best(26, False) == rehearsals.best(200, True) == "pca-gp"
+    assert rehearsals.widen(26, True, "gp") == 2.0
+    assert rehearsals.widen(3, True, "gp") == 1.0
+
+
+def test_rehearsing_looks_at_what_was_seen_only_and_is_repeatable():
+    hole = with_gaps_of(24, 3)
+    model = face_model([hole])
+    first, second = (rehearse([hole], model, n_trials=6) for _ in range(2))
+    assert list(first.trials) == [(24, True, m) for m in ("pca-gp", "gp", "dct")]
+    for key, trial in first.trials.items():
+        np.testing.assert_array_equal(trial.errors_mm, second.trials[key].errors_mm)
+        assert np.isfinite(trial.errors_mm).all()
+    assert not rehearse([capture(face(1)[1])], model).trials
 
 
 def test_a_gap_of_the_whole_face_is_bridged_and_at_an_end_left_to_the_smoother():
