@@ -13,24 +13,9 @@ import time
 import pytest
 from strategies.talking import talking_corpus
 
-from corpus_tools.cli.common import guarded
-from corpus_tools.cli.main import app
 from corpus_tools.evaluate import METRICS
 
 FILES = {"table.csv", "sentences.csv", "table.json", "report.html", "run.json"}
-
-
-@pytest.fixture
-def tool(capsys):
-    """Return ``tool(*args) -> (exit code, stdout, stderr)``, run in this process."""
-
-    def run(*args):
-        capsys.readouterr()
-        code = guarded(lambda: app([str(a) for a in args], standalone_mode=True))
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return run
 
 
 @pytest.fixture(scope="module")

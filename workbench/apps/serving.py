@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import secrets
 import socket
 import threading
@@ -229,8 +230,19 @@ class Workbench:
         )
 
 
+class _ClosedTabs(logging.Filter):
+    """Leaves out what Bokeh says of a tab that was closed while something was sent to it."""
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        return "as connection was closed" not in record.getMessage()
+
+
+_CLOSED_TABS = _ClosedTabs()
+
+
 def _expect_closed_tabs() -> None:
     """Let a tab be closed while something is sent to it: no fault, and nothing for the log."""
+    logging.getLogger("bokeh.server.views.ws").addFilter(_CLOSED_TABS)  # one filter is entered once
 
     def told(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         if type(context.get("exception")).__name__ not in ("WebSocketClosedError", "StreamClosedError"):

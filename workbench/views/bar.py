@@ -9,13 +9,14 @@ import panel as pn
 import panel_material_ui as pmui
 
 from corpus_tools.core import counted
+from corpus_tools.speech import MOST_CHARACTERS
 from workbench.state import Session
 from workbench.views.controls import Controls, button, preset_buttons
 
 __all__ = ["AppBar", "sentence_options"]
 
-MOST_LETTERS = 1000
-"""Longest text that can be typed (our choice: about a minute of speech)."""
+MOST_LETTERS = 10 * MOST_CHARACTERS
+"""Where the browser cuts a text: far above what can be spoken, so that too much is told, not cut."""
 
 _KINDS = {"Recording": "recording", "Text": "text"}
 

@@ -1,6 +1,7 @@
 """The command: wrong arguments are one sentence and exit 2; only loopback without a password."""
 
 import asyncio
+import logging
 import socket
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import threading
 import time
 
 import pytest
+from bokeh.server.views.ws import WSHandler
 from tornado.websocket import WebSocketClosedError
 
 from corpus_tools.core import InputError
@@ -70,6 +72,20 @@ def test_a_tab_that_is_closed_while_something_is_sent_to_it_leaves_no_traceback(
     run(WebSocketClosedError())
     assert not caplog.records
     run(ValueError("another fault"))
+    assert "another fault" in caplog.text
+
+
+def test_bokeh_does_not_warn_of_a_tab_that_was_closed_in_the_middle(caplog):
+    class Gone:
+        async def send(self, connection):
+            raise WebSocketClosedError
+
+    _expect_closed_tabs()
+    sending = threading.Thread(target=lambda: asyncio.run(WSHandler.send_message(None, Gone())))
+    sending.start()
+    sending.join()
+    assert not caplog.records
+    logging.getLogger("bokeh.server.views.ws").warning("another fault")
     assert "another fault" in caplog.text
 
 
