@@ -12,6 +12,11 @@ from pathlib import Path
 
 from corpus_tools.core.errors import OutputError
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
 __all__ = ["atomic_file", "atomic_folder", "check_writable"]
 
 
@@ -86,7 +91,8 @@ def atomic_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise _refusal(target, error) from error
     try:
         yield temporary
-        _move_all(temporary, target)
+        with _alone(target.parent):
+            _move_all(temporary, target)
     except OSError as error:
         raise _refusal(target, error) from error
     finally:
@@ -95,6 +101,24 @@ def atomic_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
         except BaseException:  # interrupted: to the end all the same
             shutil.rmtree(temporary, ignore_errors=True)
             raise
+
+
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Let nobody else of ours move files below `folder` meanwhile: two runs into one folder do not mix.
+
+    Where there are no such locks (Windows, some network disks) it holds nobody off.
+    """
+    handle = -1
+    try:
+        if fcntl is not None:
+            with contextlib.suppress(OSError):
+                handle = os.open(folder, os.O_RDONLY)
+                fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        if handle >= 0:
+            os.close(handle)
 
 
 def _hidden(target: Path) -> str:

@@ -6,7 +6,7 @@ import contextlib
 import glob
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -32,7 +32,14 @@ from corpus_tools.io.description import (
     parsed_axes,
     write_description,
 )
-from corpus_tools.io.formats import read_audio, read_labels, read_markers
+from corpus_tools.io.formats import (
+    AUDIO_READERS,
+    LABEL_READERS,
+    MOTION_READERS,
+    read_audio,
+    read_labels,
+    read_markers,
+)
 
 __all__ = [
     "RecordingFiles",
@@ -65,6 +72,13 @@ _SETTABLE = (
     "word_tier",
     "audio_offset_s",
 )
+
+_READERS: dict[str, Collection[str]] = {
+    "motion": MOTION_READERS,
+    "audio": AUDIO_READERS,
+    "labels": LABEL_READERS,
+}
+"""Suffixes that can be read, by what they are read as."""
 
 _NUMBERS = {
     "audio_offset_s": "seconds were expected, as in 0.02",
@@ -269,6 +283,13 @@ def init_corpus(
 def _check_files(description: CorpusDescription, typed: Mapping[str, str | None]) -> None:
     """Refuse patterns and tiers that no recording has anything for, before anything is written."""
     found = find_recordings(description)
+    for what, readers in _READERS.items():
+        paths = [path for files in found if (path := getattr(files, what))]
+        if paths and not any(path.suffix.lower() in readers for path in paths):
+            raise CorpusError(
+                f"corpus-tools init: --{what} finds '{paths[0]}', which has the suffix '{paths[0].suffix}'; "
+                f"what can be read: {', '.join(readers)}."
+            )
     for what, pattern in typed.items():
         if pattern and not any(getattr(files, what) for files in found):
             looked = str(_absolute(description, getattr(description, what))).replace("{id}", found[0].id)

@@ -221,7 +221,9 @@ def read_description(folder: str | Path) -> CorpusDescription:
         The folder or the file is missing, or the file is not right; the message says what to do.
     """
     place = Path(folder)
-    if not os.path.isdir(place):  # noqa: PTH112 - False also for names that no file system takes
+    if os.path.isfile(place):  # noqa: PTH113 - False also for names that no file system takes
+        raise CorpusError(f"'{place}' is a file, no corpus folder; give the folder that holds {CORPUS_FILE}.")
+    if not os.path.isdir(place):  # noqa: PTH112 - as above
         raise CorpusError(
             f"There is no corpus folder '{place}'; 'corpus-tools init' makes one over recordings."
         )

@@ -37,8 +37,8 @@ JOIN_COLUMNS = (
     "gap_mm_s2",
     "natural_percentile",
 )
-"""Columns of ``joins.csv``: the fields of :class:`~corpus_tools.core.trajectory.Join`, which says what each is;
-gap_mm, gap_mm_s and gap_mm_s2 are how far two fragments differ in position, velocity and acceleration."""
+"""Columns of ``joins.csv``: the fields of :class:`~corpus_tools.core.trajectory.Join`, which says what they
+are; gap_mm, gap_mm_s and gap_mm_s2: how far two fragments differ in position, velocity and acceleration."""
 
 
 def write_motion(path: Path, trajectory: Trajectory) -> None:

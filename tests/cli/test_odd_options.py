@@ -104,6 +104,26 @@ def test_a_pattern_that_matches_nothing_makes_no_corpus(tool, simulated_corpus, 
     assert not (tmp_path / "w").exists()
 
 
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        ({"motion": "C/wav/{id}.wav"}, ["--motion finds", "suffix '.wav'", ".c3d"]),
+        ({"audio": "C/markers/{id}.npz"}, ["--audio finds", "suffix '.npz'", ".wav"]),
+        ({"labels": "C/wav/{id}.wav"}, ["--labels finds", "suffix '.wav'", ".textgrid"]),
+    ],
+)
+def test_files_that_cannot_be_read_make_no_corpus(tool, simulated_corpus, tmp_path, other, words):
+    refused(init(tool, simulated_corpus, tmp_path / "w", **other), *words)
+    assert not (tmp_path / "w").exists()
+
+
+def test_a_file_is_no_corpus_folder_and_no_topic_no_benchmark(tool, simulated_corpus, tmp_path):
+    file = simulated_corpus / "corpus.toml"
+    refused(tool("check", file), str(file), "is a file", "folder that holds corpus.toml")
+    refused(tool("bench", "--only", " ,", "--out", tmp_path / "b.json"), "--only names no topic", "kalman")
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("key", ["word_tier", "phone_tier"])
 def test_a_tier_that_no_labels_have_is_refused_with_those_that_are_there(
     tool, simulated_corpus, tmp_path, key

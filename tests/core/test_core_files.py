@@ -2,6 +2,10 @@
 
 import errno
 import os
+import sys
+import threading
+import time
+from pathlib import Path
 
 import pytest
 
@@ -71,3 +75,29 @@ def test_a_full_disk_is_told_to_be_emptied(tmp_path, atomic):
     ):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no locks on folders")
+def test_two_that_write_one_folder_do_not_mix(tmp_path, monkeypatch):
+    move = Path.replace
+
+    def slowly(path, to):
+        time.sleep(0.002)
+        return move(path, to)
+
+    monkeypatch.setattr(Path, "replace", slowly)
+    names, met = "abcd", threading.Barrier(4)
+
+    def write(who):
+        with atomic_folder(tmp_path / "o") as folder:
+            for name in names:
+                (folder / name).write_text(who)
+            met.wait(timeout=30)
+
+    writers = [threading.Thread(target=write, args=(who,)) for who in "1234"]
+    for writer in writers:
+        writer.start()
+    for writer in writers:
+        writer.join()
+    assert len({(tmp_path / "o" / name).read_text() for name in names}) == 1
+    assert [p.name for p in tmp_path.iterdir()] == ["o"]

@@ -14,7 +14,7 @@ import typer
 
 from corpus_tools.cli.bench.rows import BENCHMARKS, Ground, Row
 from corpus_tools.cli.common import PATH, emit_json, progress_bar, say
-from corpus_tools.core import OutputError, atomic_file, check_writable, counted
+from corpus_tools.core import InputError, OutputError, atomic_file, check_writable, counted
 from corpus_tools.demo import simulate_corpus
 from corpus_tools.pipeline import OpenCorpus, Progress, library_versions, open_corpus
 
@@ -75,6 +75,8 @@ def _topics(only: str | None) -> list[str]:
     names = [n.strip() for n in only.split(",") if n.strip()] if only is not None else list(BENCHMARKS)
     for name in names:
         BENCHMARKS[name]
+    if not names:
+        raise InputError(f"--only names no topic; known: {', '.join(BENCHMARKS)}.")
     return names
 
 
