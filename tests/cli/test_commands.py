@@ -184,7 +184,7 @@ CASES = [
     ("nosuchmethod", ["synth", "{c}", "--utterance", "{s}", "--method", "nosuchmethod"]),
     ("corpsu", ["synth", "{c}", "--utterance", "{s}", "--config", "{bad}/misspelt.toml"]),
     ("fps", ["synth", "{c}", "--utterance", "{s}", "--fps", "fast"]),
-    ("rate_hz", ["synth", "{c}", "--utterance", "{s}", "--fps", "-3"]),
+    ("--fps -3", ["synth", "{c}", "--utterance", "{s}", "--fps", "-3"]),
     ("--utterance", ["synth", "{c}"]),
     ("--audio", ["synth", "{c}", "--utterance", "{s}", "--audio", "{bad}/file"]),
 ]
