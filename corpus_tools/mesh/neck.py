@@ -14,7 +14,7 @@ from corpus_tools.mesh.lips import skin_faces
 
 __all__ = ["level_neck", "neck_rim"]
 
-_DOWN = 0.5
+_DOWN = 0.7
 """How far below its lowest point the rim is drawn, as a share of the height of the markers (our choice: a
 picture that is framed a little below the chin then shows neck down to its edge)."""
 

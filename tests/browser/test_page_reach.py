@@ -3,6 +3,7 @@
 import itertools
 
 from browser.paged import drawn, lane, settled, until
+from browser.shown import FIND
 
 from corpus_tools.config import load_config
 
@@ -106,3 +107,25 @@ def test_the_corpus_page_says_what_is_there_and_a_row_is_spoken(browser_page, se
     rows.nth(2).click()
     until(browser_page, lambda: session.sentence == name)
     lane(browser_page).wait_for()
+
+
+def test_several_heads_speak_side_by_side(browser_page, served):
+    session = drawn(browser_page, served)
+    browser_page.get_by_role("button", name="Several heads").click()
+    browser_page.wait_for_function(f"() => {FIND}.vsw.scene.actors.has('female/skin')")
+    until(browser_page, lambda: [r.head.mesh.name for r in session.cast] == ["female", "male"])
+    browser_page.locator(".over.inset.gone").wait_for(state="attached")
+    box = browser_page.locator(".slot.face").first.bounding_box()
+    right = {
+        "x": box["x"] + 0.66 * box["width"],
+        "y": box["y"],
+        "width": 0.33 * box["width"],
+        "height": box["height"],
+    }
+    before = browser_page.screenshot(clip=right)
+    browser_page.keyboard.press("Space")
+    browser_page.wait_for_function(f"() => {FIND}.vsw.shown > 60")
+    browser_page.keyboard.press("Space")
+    until(browser_page, lambda: browser_page.screenshot(clip=right) != before)
+    browser_page.get_by_role("button", name="Several heads").click()
+    browser_page.wait_for_function(f"() => !{FIND}.vsw.scene.actors.has('female/skin')")

@@ -62,6 +62,8 @@ class Desk:
             deliver, self._found_recorded, lambda number, sentence: None
         )
         self._others: LatestJob[Result] = LatestJob(deliver, self._compared, lambda number, sentence: None)
+        self._heads = Stages()  # of its own: a head in the making must not keep the first one waiting
+        self._casts: LatestJob[tuple[Result, ...]] = LatestJob(deliver, self._cast, self._refused_cast)
         self._checks: LatestJob[CorpusFacts] = LatestJob(
             deliver, self._checked, self._not_checked, self._checking
         )
@@ -69,6 +71,7 @@ class Desk:
         self._on_export: Callable[[str, str, str], None] = lambda kind, text, where: None
         session.param.watch(self._recompute, ["corpus", *EDITABLE])
         session.param.watch(self._after, ["result", "kept", "side"])
+        session.param.watch(self._others_speak, ["result", "beside"])
 
     def open(self, folder: str | Path, sentence: str | None = None) -> None:
         """Open a corpus in the background; the session shows progress, the corpus, or why it could not."""
@@ -116,6 +119,7 @@ class Desk:
             self._effects,
             self._recordings,
             self._others,
+            self._casts,
             self._checks,
             self._exports,
         ):
@@ -222,6 +226,33 @@ class Desk:
     def _not_checked(self, number: int, sentence: str) -> None:
         self._check_of = None
         self.session.check_trouble = sentence
+
+    def _others_speak(self, *events: Any) -> None:
+        """Let the heads beside the first speak the same motion."""
+        session, result = self.session, self.session.result
+        names = tuple(session.beside)
+        if result is None or not names:
+            self._casts.cancel()
+            session.cast = ()
+            return
+
+        def work(job: Job) -> tuple[Result, ...]:
+            made = []
+            for name in names:
+                job.check()
+                made.append(self._heads.on_head(result, name))
+            return tuple(made)
+
+        self._casts.submit(work, cancel_running=True)
+
+    def _cast(self, number: int, cast: tuple[Result, ...]) -> None:
+        session = self.session
+        wanted = [r.head.mesh.name for r in cast] == list(session.beside)
+        if wanted and session.result is not None and cast[0].trajectory is session.result.trajectory:
+            session.cast = cast
+
+    def _refused_cast(self, number: int, sentence: str) -> None:
+        self.session.param.update(beside=[], message=sentence)
 
     def export(
         self, path: str | Path, done: Callable[[str, str, str], None], beside: Path | None = None

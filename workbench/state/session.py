@@ -52,6 +52,8 @@ class Session(Editing):
     )
     other = param.ClassSelector(class_=Result, allow_None=True, default=None, doc="Of setting A, if another.")
 
+    beside = param.List(default=[], item_type=str, doc="Heads that speak beside the first.")
+    cast = param.ClassSelector(class_=tuple, default=(), doc="The result on each of them, as far as known.")
     facts = param.ClassSelector(
         class_=CorpusFacts, allow_None=True, default=None, doc="What a check of the corpus found."
     )

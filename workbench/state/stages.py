@@ -191,6 +191,26 @@ class Stages:
         parts = (utterance, selection, pieces, trajectory, head, animation, ratios)
         return Result(request, *parts, tuple(ran), elapsed_ms)
 
+    def on_head(self, result: Result, name: str) -> Result:
+        """Return the same motion on another head.
+
+        Parameters
+        ----------
+        result : Result
+        name : str
+            Of a bundled head, or a mesh file.
+
+        Raises
+        ------
+        WorkbenchError
+            The head cannot be used; the message says why.
+        """
+        corpus, config = result.request.corpus, result.request.config
+        key = (corpus, *_values(config, "retarget", "deform"))
+        with self._lock:
+            head = self._stage(f"head {name}", key, lambda: prepare_head(corpus, name, config), [])
+        return replace(result, head=head, animation=animate(head, result.trajectory))
+
     def recorded(self, result: Result) -> Result | None:
         """Return the result with the motion of the recording itself in place of the blend; None for a text.
 

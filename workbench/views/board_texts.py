@@ -5,11 +5,22 @@ from __future__ import annotations
 from corpus_tools.core import counted
 from workbench.state import Effects, Result, missing_of, stand_ins
 
-__all__ = ["head_text", "lower_text", "missing_text"]
+__all__ = ["beside_of", "head_text", "lower_text", "missing_text"]
 
 
-def head_text(result: Result) -> str:
-    """Return which head is shown and how large it is."""
+BESIDE = ("female", "male", "child")
+"""Heads that stand beside the first unless others are chosen (our choice: faces that differ in size)."""
+
+
+def beside_of(mesh: str) -> list[str]:
+    """Return two bundled heads to show beside another."""
+    return [name for name in BESIDE if name != mesh][:2]
+
+
+def head_text(result: Result, cast: tuple[Result, ...] = ()) -> str:
+    """Return which head is shown and how large it is; of several, which, and that they speak one motion."""
+    if cast:
+        return f"{', '.join(r.head.mesh.name for r in (result, *cast))} · the same motion"
     mesh, n_markers = result.head.mesh, len(result.head.names)
     vertices = counted(mesh.n_vertices, "vertex", "vertices")
     return f"{mesh.name} head · {vertices} · {counted(n_markers, 'marker')}"

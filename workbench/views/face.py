@@ -9,10 +9,11 @@ import panel as pn
 import param
 import pyvista.plotting
 
-from corpus_tools.core import Mesh
 from corpus_tools.mesh import PatchBinding, mesh_by_name_or_file
 from corpus_tools.pipeline import Head
 from workbench.state import Result
+from workbench.views.cameras import head_camera
+from workbench.views.cast import cast_camera, cast_places, cast_prefix
 from workbench.views.head_actors import OVERLAYS, head_actors
 from workbench.views.mesh_view import MeshView
 
@@ -25,42 +26,6 @@ GLASS = {"surface": 0.45, "attachment": 0.72}
 """Opacity of the skin over a control surface, and over lines that end below it."""
 ASIDE = 0.1
 """Of a head on the page: the recorded one and the switches stand at the right."""
-_VIEW_ANGLE_DEG = 20.0
-_AROUND_DEG = 22.0
-_ABOVE_DEG = 3.0
-_OVER, _BELOW = 0.02, 0.12
-"""Ground above the skull and neck below the chin, as shares of the height between."""
-
-
-def head_camera(mesh: Mesh, aside: float = 0.0) -> dict[str, Any]:
-    """Return a camera on the whole face, a little from the side, so that lips show in depth.
-
-    The top of the skull has some ground above it; below the chin there is neck as far as the picture goes, so
-    that where a head ends is out of sight.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    aside : float
-        How far left of the middle of the picture the head stands, as a share of its height.
-    """
-    skin = mesh.vertices_mm[mesh.part_mask("skin")] if "skin" in mesh.part_names else mesh.vertices_mm
-    marked = mesh.vertices_mm[list(mesh.markers.values())] if mesh.markers else skin
-    top, chin = float(skin[:, 1].max()), float(marked[:, 1].min())
-    around, above = np.radians([_AROUND_DEG, _ABOVE_DEG])
-    towards = np.array([np.sin(around) * np.cos(above), np.sin(above), np.cos(around) * np.cos(above)])
-    low, high = chin - _BELOW * (top - chin), top + _OVER * (top - chin)
-    middle = 0.5 * (skin.min(axis=0) + skin.max(axis=0))
-    centre = np.array([middle[0], 0.5 * (low + high), 0.5 * (middle[2] + marked[:, 2].max())])
-    centre += aside * (high - low) * np.array([np.cos(around), 0.0, -np.sin(around)])
-    distance = 0.5 * (high - low) / np.tan(np.radians(_VIEW_ANGLE_DEG / 2))
-    return {
-        "position": [float(v) for v in centre + distance * towards],
-        "focal_point": [float(v) for v in centre],
-        "view_up": [0.0, 1.0, 0.0],
-        "view_angle": _VIEW_ANGLE_DEG,
-        "parallel_scale": 0.0,
-    }
 
 
 class Face(pn.viewable.Viewer):
@@ -81,6 +46,7 @@ class Face(pn.viewable.Viewer):
     def __init__(self, clock: str, theme: str, **params: Any) -> None:
         super().__init__(**params)
         self._head: Head | None = None
+        self._cast: tuple[Result, ...] = ()
         self.result: Result | None = None
         self.mesh_view = MeshView(session=clock, theme=theme, description="Talking head")
         self.view = self.mesh_view
@@ -110,22 +76,42 @@ class Face(pn.viewable.Viewer):
         self.result = result
         if result.head is not self._head:
             self._head = result.head
-            mesh = result.head.mesh
-            self.mesh_view.show_actors(
-                head_actors(mesh, result.head.binding), camera=head_camera(mesh, ASIDE)
-            )
-            self._show_overlays()
+            self._build()
         self._move()
+
+    def show_cast(self, results: tuple[Result, ...]) -> None:
+        """Show other heads beside the first, each with a result of its own; none: the first alone."""
+        before, self._cast = self._cast, results
+        if self._head is None:
+            return
+        if [r.head for r in before] != [r.head for r in results]:
+            self._build()
+        self._move()
+
+    def _build(self) -> None:
+        """Show the heads at rest; their motion follows."""
+        assert self._head is not None
+        meshes = [self._head.mesh, *(r.head.mesh for r in self._cast)]
+        actors = head_actors(meshes[0], self._head.binding)
+        for other, place in zip(self._cast, cast_places(meshes)[1:], strict=True):
+            mesh, binding = other.head.mesh, other.head.binding
+            actors += head_actors(mesh, binding, prefix=cast_prefix(mesh.name), matrix=place)
+        camera = cast_camera(meshes) if self._cast else head_camera(meshes[0], ASIDE)
+        self.mesh_view.show_actors(actors, camera=camera)
+        self._show_overlays()
 
     def _move(self) -> None:
         if self.result is None:
             return
         trajectory = self.result.trajectory
-        self.mesh_view.set_motion(
-            trajectory.rate_hz,
-            **head_motion(self.result, self.mesh_view.actors),
-            start_s=float(trajectory.times_s[0]),
-        )
+        own = [a for a in self.mesh_view.actors if "/" not in a["name"]]
+        motion = head_motion(self.result, own)
+        for other in self._cast:
+            if len(other.trajectory.times_s) == len(trajectory.times_s):  # else of another sentence: it rests
+                theirs = head_motion(other, self.mesh_view.actors, cast_prefix(other.head.mesh.name))
+                for what, values in theirs.items():
+                    motion[what].update(values)
+        self.mesh_view.set_motion(trajectory.rate_hz, **motion, start_s=float(trajectory.times_s[0]))
 
     def _overlay(self, *events: Any) -> None:
         if self._show_overlays():

@@ -6,6 +6,7 @@ import html
 from typing import Any
 
 import panel as pn
+import panel_material_ui as pmui
 
 from corpus_tools.mesh import CHARACTERS, DEFORMERS
 from corpus_tools.methods import SEARCHES
@@ -75,7 +76,7 @@ class SettingsPanel(pn.viewable.Viewer):
         session.param.watch(self._update, list(_labels()))
         self._update()
 
-    def _selects(self, controls: Controls) -> list[pn.Row]:
+    def _selects(self, controls: Controls) -> list[Any]:
         pair = {"margin": (10, 4, 2, 12)}, {"margin": (10, 12, 2, 4)}
         labels = _labels()
         rows = []
@@ -88,7 +89,16 @@ class SettingsPanel(pn.viewable.Viewer):
                 for (label, name), place in zip(couple, pair, strict=True)
             ]
             rows.append(pn.Row(*made, sizing_mode="stretch_width", margin=0))
-        return rows
+        self.beside = controls.make(
+            pmui.MultiChoice,
+            label="Heads beside it",
+            options=labels["mesh"],
+            variant="outlined",
+            sizing_mode="stretch_width",
+            margin=(10, 12, 2, 12),
+        )
+        controls.tie(self.beside, "beside")
+        return [*rows, self.beside]
 
     def fold(self) -> None:
         """Fold the choices out, or in again."""

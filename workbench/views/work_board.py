@@ -17,7 +17,7 @@ from workbench.state import (
     effect_data,
     weighting_samples,
 )
-from workbench.views.board_texts import head_text, lower_text, missing_text
+from workbench.views.board_texts import beside_of, head_text, lower_text, missing_text
 from workbench.views.controls import Controls, preset_buttons, slider
 from workbench.views.face import Face
 from workbench.views.head_actors import OVERLAYS
@@ -87,7 +87,8 @@ class BlendBoard(pn.viewable.Viewer):
         watch(self._theme, "theme")
         watch(self._moving, "moving")
         watch(self._result, ["result", "other"])
-        watch(self._recorded, "recorded")
+        watch(self._recorded, ["recorded", "cast"])
+        watch(self._cast, ["cast", "beside"])
         watch(self._select, "selected")
         watch(self._curve, ["weighting", "shape", "curve_weights", "kept", "side"])
         watch(self._effect, ["result", "other", "effects", "selected"])
@@ -106,11 +107,25 @@ class BlendBoard(pn.viewable.Viewer):
         """Look at the recording as at the blend."""
         self.inset.mesh_view.camera = dict(event.new)
 
-    def _recorded(self, event: Any) -> None:
-        if event.new is not None:
-            self.inset.show(event.new)
+    def _recorded(self, *events: Any) -> None:
+        recorded, alone = self._session.recorded, not self._session.cast
+        if recorded is not None and alone:
+            if self.inset.result is not recorded:
+                self.inset.show(recorded)
             self.inset.mesh_view.camera = dict(self.face.mesh_view.camera)
-        self.board.inset_shown = event.new is not None
+        self.board.inset_shown = recorded is not None and alone
+
+    def _cast(self, *events: Any) -> None:
+        session = self._session
+        self.face.show_cast(session.cast)
+        if session.result is not None:
+            self.board.head_text = head_text(session.result, session.cast)
+        self._overlays()
+
+    def _several(self) -> None:
+        """Let other heads speak beside the first, or let it be alone again."""
+        session = self._session
+        session.beside = [] if session.beside else beside_of(session.mesh)
 
     def _opening(self, *events: Any) -> None:
         session = self._session
@@ -152,6 +167,8 @@ class BlendBoard(pn.viewable.Viewer):
             self._on_cancel()
         elif action == "view":
             self.switch_view()
+        elif action == "several":
+            self._several()
         elif action in OVERLAYS:
             name = f"show_{action}"
             setattr(self.face, name, not getattr(self.face, name))
@@ -169,6 +186,8 @@ class BlendBoard(pn.viewable.Viewer):
             }
             for what in OVERLAYS
         ]
+        several = {"id": "several", "label": "Several heads", "on": bool(self._session.beside), "can": True}
+        self.board.overlays = [*self.board.overlays, several]
 
     def switch_view(self) -> None:
         """Show the trajectories instead of the lane, or the lane again."""
@@ -237,7 +256,7 @@ class BlendBoard(pn.viewable.Viewer):
         self.lane.selected = self._session.selected
         n = len(result.selection.chosen)
         self.board.param.update(
-            head_text=head_text(result),
+            head_text=head_text(result, self._session.cast),
             lane_text=f"{result.selection.method} · {counted(n, 'fragment')} · "
             f"{counted(n - 1, 'join')} · cost {result.selection.total_cost:.2f}",
             held_out_text=f"recording {result.request.sentence} held out" if result.request.exclude else "",
