@@ -51,6 +51,7 @@ class Desk:
             deliver, self._opened, self._not_opened, self._progress
         )
         self._deliver = deliver
+        self._asked = 0
         self._moved: tuple[int, Result] | None = None
         self.after_head: Callable[[Callable[[], None]], None] = deliver
         """Runs the newest of some actions when the head has moved and the drag pauses."""
@@ -149,14 +150,18 @@ class Desk:
         follows = shown is not None and shown.request.same_target(result.request)
         (self.after_head if follows else self._deliver)(self._show)
 
-    def _rested(self) -> None:
-        self.after_head(self._show)
-
     def _show(self) -> None:
         """Show all there is to show of the newest result; a drag may be at the next one already."""
-        if self._moved is not None:
-            self.session.accept(*self._moved)
-        self.session.working = self._results.busy
+        moved, self._moved = self._moved, None
+        if moved is None:
+            return
+        self.session.accept(*moved)
+        if moved[0] == self._asked:
+            self.session.working = False
+
+    def _rested(self) -> None:
+        if self._moved is None and not self._results.busy:
+            self.session.working = False
 
     def _refused(self, number: int, sentence: str) -> None:
         self.session.refuse(number, sentence)
@@ -173,7 +178,9 @@ class Desk:
             return
         other_target = any(e.name in ("corpus", "sentence", "text", "target_kind") for e in events)
         self.session.working = True
-        self._results.submit(lambda job: self.stages.run(request, job.check), cancel_running=other_target)
+        self._asked = self._results.submit(
+            lambda job: self.stages.run(request, job.check), cancel_running=other_target
+        )
 
     def _after(self, *events: Any) -> None:
         """Measure what the plots show of a result, and compute setting A where it is another one."""

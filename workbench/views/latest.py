@@ -95,8 +95,8 @@ class LatestWins:
 class AfterPainted:
     """Lets what can wait give way to a picture that follows a drag.
 
-    The newest of some actions runs once the picture has been painted and nobody has asked for another action
-    for a while.
+    An action runs once the picture has been painted. In a drag, when the next is asked for soon after, only
+    the newest runs, when the drag pauses.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class AfterPainted:
     deliver : callable
         ``deliver(action)`` runs ``action()`` where the page's parameters may be set.
     quiet_s : float, s
-        So long nobody has asked (our choice: a little more than the time between two steps of a drag).
+        A pause: so long nobody asks (our choice: a little more than the time between two steps of a drag).
     patience_s : float, s
         So long an action waits at most, in a drag that does not end or for a tab that paints nothing.
     """
@@ -114,24 +114,25 @@ class AfterPainted:
         self,
         line: LatestWins,
         deliver: Callable[[Callable[[], None]], None],
-        quiet_s: float = 0.2,
+        quiet_s: float = 0.25,
         patience_s: float = 0.6,
     ) -> None:
         self._line, self._deliver = line, deliver
         self._quiet_s, self._patience_s = quiet_s, patience_s
         self._lock = threading.Lock()
         self._action: Callable[[], None] | None = None
-        self._latest_s = self._quiet_from_s = 0.0
+        self._latest_s = self._quiet_from_s = self._asked_s = 0.0
 
     def __call__(self, action: Callable[[], None]) -> None:
         """Let an action wait for its time; it replaces one that waits."""
         with self._lock:
             now_s = time.monotonic()
             waits, self._action = self._action is not None, action
-            self._quiet_from_s = now_s + self._quiet_s
+            pause = now_s - self._asked_s > self._quiet_s
+            self._asked_s, self._quiet_from_s = now_s, now_s if pause else now_s + self._quiet_s
             if not waits:
                 self._latest_s = now_s + self._patience_s
-                self._look_after(min(self._quiet_s, self._patience_s))
+                self._look_after(0.0 if pause else min(self._quiet_s, self._patience_s))
 
     def _look_after(self, wait_s: float) -> None:
         timer = threading.Timer(wait_s, self._look)

@@ -124,11 +124,14 @@ def test_what_can_wait_runs_once_the_picture_is_painted_and_only_the_newest():
 def test_it_waits_while_others_are_asked_for_but_not_for_ever():
     made = Line()
     done, ran, after = waits_of(made, quiet_s=5.0, patience_s=0.2)
+    after(lambda: done.append("first"))
+    assert ran.wait(3)
+    ran.clear()
     for number in range(5):
         after(lambda number=number: done.append(number))
-    assert done == []
+    assert done == ["first"]
     assert ran.wait(3)
-    assert done == [4]
+    assert done == ["first", 4]
 
 
 def test_what_waits_for_a_tab_that_paints_nothing_runs_all_the_same():
