@@ -13,21 +13,27 @@ from corpus_tools.cleaning.head_motion import (
     remove_head_motion,
 )
 from corpus_tools.cleaning.kalman import kalman_smooth, measurement_sd_mm, smooth_channels
+from corpus_tools.cleaning.outliers import Outliers, find_outliers, usual_spread_mm, without_outliers
 from corpus_tools.cleaning.rehearsal import Rehearsals, Trial, rehearse
+from corpus_tools.cleaning.slips import Slip, find_slips, with_slips_marked
 
 __all__ = [
     "GAP_FILLERS",
     "CleanedCorpus",
     "FaceModel",
     "HeadMotion",
+    "Outliers",
     "PhoneHalves",
     "RecordingBias",
     "Rehearsals",
+    "Slip",
     "Trial",
     "clean_captures",
     "estimate_head_motion",
     "face_model",
     "fill_gaps",
+    "find_outliers",
+    "find_slips",
     "gaps",
     "holding",
     "kalman_smooth",
@@ -40,4 +46,7 @@ __all__ = [
     "rehearse",
     "remove_head_motion",
     "smooth_channels",
+    "usual_spread_mm",
+    "with_slips_marked",
+    "without_outliers",
 ]

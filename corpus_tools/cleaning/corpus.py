@@ -8,12 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from corpus_tools.cleaning.face_model import FaceModel, face_model
+from corpus_tools.cleaning.face_model import face_model
 from corpus_tools.cleaning.filling import AUTO, fill_gaps
 from corpus_tools.cleaning.head_motion import HeadMotion, reference_shape, remove_head_motion
 from corpus_tools.cleaning.kalman import kalman_smooth
+from corpus_tools.cleaning.outliers import Outliers, find_outliers, usual_spread_mm, without_outliers
 from corpus_tools.cleaning.rehearsal import REHEARSED, rehearse
+from corpus_tools.cleaning.slips import Slip, find_slips, with_slips_marked
 from corpus_tools.core import BoolArray, Capture, FloatArray, MotionError, frozen
+
+Report = Callable[[float, str], None]
+
+LEAST_FRAMES, LEAST_MARKERS = 240, 12
+"""Of a corpus in which outliers are looked for (our choice: fewer do not tell how a face moves)."""
 
 __all__ = ["CleanedCorpus", "clean_captures", "neutral_pose"]
 
@@ -32,6 +39,9 @@ class CleanedCorpus:
         Spread of the head scale over all fitted frames; 0 for rigid fits.
     sd_mm : tuple of (n_frames, n_markers) mm
         One standard deviation of a coordinate of every sample after smoothing; of filled ones, of filling.
+    outliers : tuple of Outliers or None
+        None where nothing was looked for.
+    slips : tuple of tuple of Slip
     """
 
     captures: tuple[Capture, ...]
@@ -39,16 +49,43 @@ class CleanedCorpus:
     head_motion: tuple[HeadMotion, ...]
     scale_sd: float
     sd_mm: tuple[FloatArray, ...]
+    outliers: tuple[Outliers | None, ...] = ()
+    slips: tuple[tuple[Slip, ...], ...] = ()
 
 
-def _model(captures: Sequence[Capture], gap_method: str, n_components: int) -> FaceModel | None:
-    """Return how the markers move together, when a gap asks for it: markers hidden while others are seen."""
-    if gap_method not in (AUTO, "pca-gp"):
-        return None
+def _has_gaps(captures: Sequence[Capture]) -> bool:
+    """Return whether markers are hidden anywhere while others are seen."""
     seen: list[BoolArray] = [np.asarray(np.isfinite(c.positions_mm).all(axis=2)) for c in captures]
-    if not any((s.any(axis=1) & ~s.all(axis=1)).any() for s in seen):
-        return None
-    return face_model(captures, n_components)
+    return any(bool((s.any(axis=1) & ~s.all(axis=1)).any()) for s in seen)
+
+
+def _checked(
+    captures: Sequence[Capture],
+    columns: Sequence[int],
+    known: Sequence[int],
+    n_components: int,
+    report: Report,
+) -> tuple[list[Capture], list[Outliers | None], list[tuple[Slip, ...]]]:
+    """Return captures without outliers and with slips marked, and what was found.
+
+    Nothing is looked for where the face is too small, or shown too briefly, to tell where its markers belong.
+    """
+    nothing: list[tuple[Slip, ...]] = [() for _ in captures]
+    familiar = [captures[i] for i in known]
+    shown = sum(int(np.isfinite(c.positions_mm).any(axis=(1, 2)).sum()) for c in familiar)
+    model = None
+    if shown >= LEAST_FRAMES and len(captures[0].names) >= LEAST_MARKERS:
+        model = face_model(familiar, n_components)
+    if model is None:
+        return list(captures), [None] * len(captures), nothing
+    spread = usual_spread_mm(familiar, model)
+    clean, outliers, slips = [], [], []
+    for index, capture in enumerate(captures):
+        report(index / len(captures), "looking for spikes, swaps and slips")
+        outliers.append(find_outliers(capture, model, spread))
+        slips.append(find_slips(capture, model, columns))
+        clean.append(with_slips_marked(without_outliers(capture, outliers[-1]), slips[-1]))
+    return clean, list(outliers), slips
 
 
 def _smoothed(filled: Capture, fill_sd_mm: FloatArray, cutoff_hz: float) -> tuple[Capture, FloatArray]:
@@ -69,9 +106,10 @@ def clean_captures(
     gap_longest_s: float = 1.0,
     gap_doubt_mm: float = 1.0,
     gap_components: int = 24,
+    outliers: bool = True,
     names: Sequence[str] = (),
     learn_from: Sequence[int] | None = None,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Report | None = None,
 ) -> CleanedCorpus:
     """Remove head motion, fill gaps and smooth all recordings of one speaker (paper A section 4).
 
@@ -94,6 +132,8 @@ def clean_captures(
         As of :func:`~corpus_tools.cleaning.filling.fill_gaps`.
     gap_components : int
         Of the model of the face that fills gaps.
+    outliers : bool
+        Whether spikes and exchanged markers are taken out (and filled, flagged) and slips are marked.
     names : sequence of str, optional
         Of the recordings, for messages.
     learn_from : sequence of int, optional
@@ -113,7 +153,7 @@ def clean_captures(
     reference = reference_shape([captures[i] for i in known], columns, allow_scale, head_cutoff_mm)
     stable, motions = [], []
     for index, capture in enumerate(captures):
-        report(0.2 + 0.5 * index / len(captures), "removing head motion")
+        report(0.2 + 0.4 * index / len(captures), "removing head motion")
         try:
             still, motion = remove_head_motion(
                 capture, reference, columns, allow_scale, head_cutoff_mm, iterations
@@ -123,9 +163,15 @@ def clean_captures(
             raise MotionError(f"'{name}': {error}") from None
         stable.append(still)
         motions.append(motion)
-    report(0.7, "filling gaps")
+    found: list[Outliers | None] = [None] * len(stable)
+    slips: list[tuple[Slip, ...]] = [()] * len(stable)
+    if outliers:
+        stable, found, slips = _checked(
+            stable, columns, known, gap_components, lambda f, w: report(0.6 + 0.1 * f, w)
+        )
     familiar = [stable[i] for i in known]
-    model = _model(familiar, gap_method, gap_components)
+    wanted = gap_method in (AUTO, "pca-gp") and _has_gaps(familiar)
+    model = face_model(familiar, gap_components) if wanted else None
     tried = REHEARSED if gap_method == AUTO else [gap_method]
     rehearsals = rehearse(
         familiar,
@@ -148,7 +194,15 @@ def clean_captures(
         cleaned.append(smooth)
         bands.append(frozen(band))
     scales = np.concatenate([m.scale[m.fitted] for m in motions])
-    return CleanedCorpus(tuple(cleaned), frozen(reference), tuple(motions), float(scales.std()), tuple(bands))
+    return CleanedCorpus(
+        tuple(cleaned),
+        frozen(reference),
+        tuple(motions),
+        float(scales.std()),
+        tuple(bands),
+        tuple(found),
+        tuple(slips),
+    )
 
 
 def neutral_pose(captures: Sequence[Capture], quiet: Sequence[npt.NDArray[np.bool_]]) -> FloatArray:

@@ -91,7 +91,8 @@ def fill_gaps(
         sd_mm[block] = np.where(said, sd, 0.0)
         long = n / capture.rate_hz > longest_s
         doubt = np.where(long | (sd > doubt_mm), FrameFlag.DOUBTFUL, 0).astype(np.uint8)
-        marked = (flags[block] & FrameFlag.DOUBTFUL) | np.uint8(FrameFlag.FILLED) | doubt
+        kept = flags[block] & np.uint8(FrameFlag.DOUBTFUL | FrameFlag.OUTLIER)
+        marked = kept | np.uint8(FrameFlag.FILLED) | doubt
         flags[block] = np.where(said, marked, flags[block])
         filled[block] = said
     done = step(

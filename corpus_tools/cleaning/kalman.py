@@ -179,7 +179,7 @@ def _mark_gaps(
         if a == 0 or b == n - 1 or (b - a + 1) / rate_hz > DOUBTFUL_GAP_S:
             mark |= FrameFlag.DOUBTFUL
         block = np.ix_(np.arange(a, b + 1), columns)
-        flags[block] = (flags[block] & FrameFlag.DOUBTFUL) | mark
+        flags[block] = (flags[block] & (FrameFlag.DOUBTFUL | FrameFlag.OUTLIER)) | mark
         if a == 0:
             smoothed[a : b + 1, columns] = smoothed[b + 1, columns]
         elif b == n - 1:

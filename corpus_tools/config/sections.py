@@ -84,6 +84,9 @@ class CleaningSettings(Section):
         1.0, gt=0, le=100, description="Uncertainty from which a filled sample is doubtful, mm."
     )
     gap_components: int = Field(24, ge=1, le=60, description="Principal components that fill gaps.")
+    outliers: bool = Field(
+        True, description="Take out spikes and exchanged markers, flag markers that slid (beyond the paper)."
+    )
     remove_bias: bool = Field(
         True, description="Free each recording of the posture it keeps constantly (beyond the paper)."
     )

@@ -17,12 +17,16 @@ __all__ = ["Audio", "Capture", "FrameFlag"]
 
 
 class FrameFlag(enum.IntFlag):
-    """What a marker sample is; the flags stay with the frames from the file to the join report."""
+    """What a marker sample is; the flags stay with the frames from the file to the join report.
+
+    OUTLIER: it was captured where it cannot have been (a spike, exchanged markers), and was replaced.
+    """
 
     MISSING = 0
     MEASURED = 1
     FILLED = 2
     DOUBTFUL = 4
+    OUTLIER = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,7 +21,8 @@ class Join:
     position (mm), velocity (mm/s), acceleration (mm/s2). `overlap_s` is the time over which the join is
     spread: the cross-fade, or both decays of an inertial join. `natural_percentile` says where the blended
     peak acceleration around the join stands in the natural distribution of the corpus, 0-100; NaN when
-    unknown.
+    unknown. `flagged` is the share of marker samples of both fragments within the overlap that were filled,
+    are doubtful or were outliers, 0 to 1.
     """
 
     index: int
@@ -34,6 +35,7 @@ class Join:
     gap_mm_s: float
     gap_mm_s2: float
     natural_percentile: float = float("nan")
+    flagged: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -36,6 +36,7 @@ JOIN_COLUMNS = (
     "gap_mm_s",
     "gap_mm_s2",
     "natural_percentile",
+    "flagged",
 )
 """Columns of ``joins.csv``: the fields of :class:`~corpus_tools.core.trajectory.Join`, which says what they
 are; gap_mm, gap_mm_s and gap_mm_s2: how far two fragments differ in position, velocity and acceleration."""

@@ -238,6 +238,7 @@ def cleaned_recordings(
         gap_longest_s=settings.gap_longest_s,
         gap_doubt_mm=settings.gap_doubt_mm,
         gap_components=settings.gap_components,
+        outliers=settings.outliers,
         names=raw.names,
         learn_from=None if learn_from is None else [i for i, n in enumerate(raw.names) if n in learn_from],
         progress=progress,

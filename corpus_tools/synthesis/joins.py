@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from corpus_tools.core import Capture, FloatArray, IntArray, Join, Trajectory, frozen
+from corpus_tools.core import Capture, FloatArray, FrameFlag, IntArray, Join, Trajectory, frozen
 from corpus_tools.synthesis.pieces import AlignedPieces, Piece
 from corpus_tools.synthesis.resampling import resample_uniform
 
@@ -127,6 +127,17 @@ def _rms(difference: FloatArray) -> float:
     return float(np.sqrt((difference**2).sum(axis=1).mean()))
 
 
+def _flagged(left: Piece, right: Piece, frame: int, n_frames: float) -> float:
+    """Return the share of samples of both pieces within half an overlap of a frame that are flagged."""
+    bad = np.uint8(FrameFlag.FILLED | FrameFlag.DOUBTFUL | FrameFlag.OUTLIER)
+    reach, parts = round(0.5 * n_frames), []
+    for piece in (left, right):
+        first = min(max(frame - reach - piece.start, 0), len(piece.flags) - 1)
+        last = max(min(frame + reach - piece.start, len(piece.flags) - 1), first)
+        parts.append((piece.flags[first : last + 1] & bad) > 0)
+    return float(np.concatenate(parts).mean())
+
+
 def join_gaps(aligned: AlignedPieces, overlaps_s: FloatArray) -> tuple[Join, ...]:
     """Return the joins of aligned pieces with the gaps between their fragments, before any blending.
 
@@ -154,6 +165,7 @@ def join_gaps(aligned: AlignedPieces, overlaps_s: FloatArray) -> tuple[Join, ...
                 gap_mm=position,
                 gap_mm_s=velocity,
                 gap_mm_s2=acceleration,
+                flagged=_flagged(left, right, frame, float(overlaps_s[k]) * aligned.rate_hz),
             )
         )
     return tuple(joins)

@@ -147,7 +147,7 @@ def _flagged_share(inventory: UnitInventory) -> FloatArray:
     """Share of flagged samples from the centre of each phone to that of the next; 0 where no frame lies."""
     centres = 0.5 * (inventory.starts_s + inventory.ends_s)
     share = np.zeros(inventory.n_phones)
-    bad = np.uint8(FrameFlag.FILLED | FrameFlag.DOUBTFUL)
+    bad = np.uint8(FrameFlag.FILLED | FrameFlag.DOUBTFUL | FrameFlag.OUTLIER)
     for index, recording in enumerate(inventory.recordings):
         flags = recording.capture.flags
         assert flags is not None

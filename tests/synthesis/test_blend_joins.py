@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from corpus_tools.core import Capture
+from corpus_tools.core import Capture, FrameFlag
 from corpus_tools.synthesis import (
     NaturalDistribution,
     align_fragments,
@@ -56,6 +56,19 @@ def test_the_gaps_are_those_of_the_two_fragments_at_the_join():
     assert join.gap_mm_s == pytest.approx(60, rel=1e-2)
     assert join.gap_mm_s2 == pytest.approx(500, rel=3e-2)
     assert np.isnan(join.natural_percentile)
+
+
+@pytest.mark.parametrize("flag", [FrameFlag.OUTLIER | FrameFlag.FILLED, FrameFlag.DOUBTFUL, FrameFlag.FILLED])
+def test_a_join_says_how_much_of_it_was_flagged(flag):
+    selection, target, fragments = joined(parabola(0, 0, 0, 1.0), parabola(0, 0, 0, 1.0))
+    flags = np.array(fragments[1].flags)
+    flags[:, 0] = flag  # one marker of the right fragment, throughout
+    worse = [fragments[0], dataclasses.replace(fragments[1], flags=flags)]
+    shares = [
+        blend_pieces(align_fragments(selection, target, f, names=NAMES)).joins[0].flagged
+        for f in (fragments, worse)
+    ]
+    assert shares == [0.0, pytest.approx(0.5 / len(NAMES))]
 
 
 @given(seeds)
