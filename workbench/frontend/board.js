@@ -2,6 +2,8 @@
  * The work area of the blend page: face, g(u) and lane as cards that keep their places.
  */
 
+const SAID_AFTER_MS = 1000;
+
 function section(name, title) {
   const card = document.createElement("section");
   card.className = `card ${name}`;
@@ -145,6 +147,27 @@ function progress(model) {
   return box;
 }
 
+/**
+ * Says that something is computed when nothing has moved for a second. It is not there before: an indicator that
+ * turns unseen lets the browser draw the whole page sixty times a second, in the middle of a drag.
+ */
+function computing(model) {
+  const busy = document.createElement("div");
+  busy.className = "over busy";
+  busy.setAttribute("role", "status");
+  busy.innerHTML = "<i></i>computing <kbd>Esc</kbd>";
+  busy.hidden = true;
+  let late = 0;
+  const wait = () => {
+    clearTimeout(late);
+    busy.hidden = true;
+    if (model.working) late = setTimeout(() => (busy.hidden = false), SAID_AFTER_MS);
+  };
+  for (const name of ["working", "moves"]) model.on(name, wait);
+  wait();
+  return busy;
+}
+
 /** Panel entry point. */
 export function renderBoard({ model, el }) {
   el.style.width = el.style.height = "100%";
@@ -155,11 +178,7 @@ export function renderBoard({ model, el }) {
   face.card.append(slot(model, "face"));
   const tag = document.createElement("div");
   tag.className = "tag";
-  const busy = document.createElement("div");
-  busy.className = "over busy";
-  busy.setAttribute("role", "status");
-  busy.innerHTML = "<i></i>computing <kbd>Esc</kbd>";
-  face.card.append(tag, busy, sides(model), overlays(model), inset(model));
+  face.card.append(tag, computing(model), sides(model), overlays(model), inset(model));
 
   const curve = section("weighting", "g(u) at the joins");
   curve.head.append(slot(model, "mode"));
@@ -196,10 +215,9 @@ export function renderBoard({ model, el }) {
     warning.textContent = model.warning ? `▲ ${model.warning}` : "";
     warning.title = model.warning;
     root.classList.toggle("stale", model.stale);
-    busy.hidden = !model.working;
     root.classList.toggle("curves", model.shown === "curves");
   };
-  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "working", "shown"]) model.on(name, draw);
+  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "shown"]) model.on(name, draw);
   draw();
   root.append(face.card, curve.card, lane.card);
   return root;

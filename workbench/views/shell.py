@@ -119,6 +119,9 @@ class Board(pn.custom.JSComponent):
     left_text = param.String(default="", doc="How long it will take.")
     stale = param.Boolean(default=False)
     working = param.Boolean(default=False, doc="Something is computed; it is said when it takes a second.")
+    moves = param.Integer(
+        default=0, doc="Grows with every motion of the head: what is computed goes on well."
+    )
     side = param.Selector(default="B", objects=["A", "B"], doc="Which of two settings is shown.")
     compared = param.Boolean(default=False, doc="Whether the two settings differ.")
 

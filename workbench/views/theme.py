@@ -123,7 +123,9 @@ def _components(c: Any, sizes: Any, size: int) -> dict[str, Any]:
         "MuiSlider": {
             "styleOverrides": {
                 "root": {"padding": "9px 0", "height": "3px"},
+                "track": {"transition": "none"},
                 "thumb": {
+                    "transition": "none",
                     "width": "14px",
                     "height": "14px",
                     "backgroundColor": c["panel"],

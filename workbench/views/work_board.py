@@ -243,6 +243,7 @@ class BlendBoard(pn.viewable.Viewer):
 
     def _moving(self, event: Any) -> None:
         if event.new is not None and self.face.result is not event.new:
+            self.board.moves += 1
             self.face.show(event.new)
             self._overlays()
 
