@@ -1,5 +1,6 @@
 """Stages over an opened corpus, and the folder that a synthesis writes."""
 
+from corpus_tools.pipeline.cleaning_report import cleaning_lines, cleaning_report, write_cleaning
 from corpus_tools.pipeline.head import Animation, Head, animate, prepare_head, vertex_frames
 from corpus_tools.pipeline.health import check_corpus, health_lines
 from corpus_tools.pipeline.opened import OpenCorpus, open_corpus
@@ -9,9 +10,11 @@ from corpus_tools.pipeline.provenance import code_hash, corpus_provenance, libra
 from corpus_tools.pipeline.reading import (
     Progress,
     RawCorpus,
+    clean_corpus,
     cleaned_recordings,
     joined_corpora,
     read_corpus,
+    reference_columns,
 )
 from corpus_tools.pipeline.speaking import (
     check_speech,
@@ -39,7 +42,10 @@ __all__ = [
     "blend_units",
     "check_corpus",
     "check_speech",
+    "clean_corpus",
     "cleaned_recordings",
+    "cleaning_lines",
+    "cleaning_report",
     "code_hash",
     "corpus_provenance",
     "corpus_vocabulary",
@@ -53,12 +59,14 @@ __all__ = [
     "pin_text",
     "prepare_head",
     "read_corpus",
+    "reference_columns",
     "select_units",
     "speak_for",
     "speech_facts",
     "speech_language",
     "synthesise",
     "vertex_frames",
+    "write_cleaning",
     "write_motion",
     "write_synthesis",
 ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from corpus_tools.cleaning import clean_captures
+from corpus_tools.cleaning import CleanedCorpus, clean_captures
 from corpus_tools.config import Config, ConfigBase
 from corpus_tools.core import Capture, CorpusError, Recording, Utterance, WorkbenchError
 from corpus_tools.io import (
@@ -31,6 +31,7 @@ from corpus_tools.speech import PhoneSet, phone_set, recorded_utterance
 __all__ = [
     "Progress",
     "RawCorpus",
+    "clean_corpus",
     "cleaned_recordings",
     "face_only",
     "joined_corpora",
@@ -214,6 +215,21 @@ def cleaned_recordings(
 ) -> tuple[tuple[Recording, ...], float]:
     """Return the face markers of all recordings, cleaned, and the spread of the head scale taken out.
 
+    Parameters as of :func:`clean_corpus`.
+    """
+    cleaned = clean_corpus(raw, config, learn_from, progress)
+    pairs = zip(cleaned.captures, raw.utterances, strict=True)
+    return tuple(Recording(utterance, face_only(capture)) for capture, utterance in pairs), cleaned.scale_sd
+
+
+def clean_corpus(
+    raw: RawCorpus,
+    config: ConfigBase | None = None,
+    learn_from: Collection[str] | None = None,
+    progress: Progress = silent,
+) -> CleanedCorpus:
+    """Return all recordings cleaned, head markers included, and what was taken out of them.
+
     Parameters
     ----------
     raw : RawCorpus
@@ -227,7 +243,7 @@ def cleaned_recordings(
     """
     settings = (config or Config()).cleaning
     progress(0.0, "cleaning")
-    cleaned = clean_captures(
+    return clean_captures(
         raw.captures,
         reference_columns(raw.description, raw.captures[0]),
         allow_scale=raw.description.head_scale,
@@ -243,5 +259,3 @@ def cleaned_recordings(
         learn_from=None if learn_from is None else [i for i, n in enumerate(raw.names) if n in learn_from],
         progress=progress,
     )
-    pairs = zip(cleaned.captures, raw.utterances, strict=True)
-    return tuple(Recording(utterance, face_only(capture)) for capture, utterance in pairs), cleaned.scale_sd

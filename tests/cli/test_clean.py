@@ -1,0 +1,29 @@
+"""``corpus-tools clean``: told, drawn, as JSON; the corpus is left as it is."""
+
+import json
+
+
+def last_json(out):
+    return json.loads(out.splitlines()[-1])
+
+
+def test_clean_tells_and_writes_beside_the_corpus(tool, simulated_corpus, tmp_path):
+    before = {p: p.stat().st_mtime_ns for p in simulated_corpus.rglob("*")}
+    code, out, err = tool("clean", simulated_corpus, "--out", tmp_path / "o", "--json")
+    assert (code, err) == (0, "")
+    assert {p.name for p in (tmp_path / "o").iterdir()} == {"cleaning.json", "report.html"}
+    written = json.loads((tmp_path / "o/cleaning.json").read_text())
+    told = last_json(out)
+    assert told["summary"] == written["summary"]
+    assert "residual_mm" in written["recordings"][0]["head"]
+    assert "residual_mm" not in told["recordings"][0]["head"]
+    assert {p: p.stat().st_mtime_ns for p in simulated_corpus.rglob("*")} == before
+
+
+def test_a_corpus_that_is_none_and_an_out_that_is_one_are_refused(tool, simulated_corpus, tmp_path):
+    code, out, err = tool("clean", tmp_path / "nothing")
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    code, _, err = tool("clean", simulated_corpus, "--out", simulated_corpus)
+    assert code == 2
+    assert "choose a folder of its own" in err
