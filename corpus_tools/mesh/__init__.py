@@ -9,7 +9,7 @@ from corpus_tools.mesh.falloff import STILL_MARKERS
 from corpus_tools.mesh.files import mesh_by_name_or_file, read_mesh, write_mesh
 from corpus_tools.mesh.jaw import JAW_PARTS, jaw_hinge_mm, jaw_motion
 from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, close_lips, lower_side, signed_lip_aperture_mm
-from corpus_tools.mesh.neck import level_neck, neck_rim
+from corpus_tools.mesh.neck import level_neck, neck_rim, with_level_neck
 from corpus_tools.mesh.rbf import DISPLACEMENT_KERNELS, displacement_basis
 from corpus_tools.mesh.regions import SkinRegion, skin_regions
 from corpus_tools.mesh.surface import ControlSurface
@@ -55,5 +55,6 @@ __all__ = [
     "skin_regions",
     "triangles",
     "vertex_normals",
+    "with_level_neck",
     "write_mesh",
 ]

@@ -6,19 +6,21 @@ import functools
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from corpus_tools.core import IntArray, Mesh, frozen
+from corpus_tools.core import FloatArray, IntArray, Mesh, frozen
 from corpus_tools.mesh.lips import skin_faces
 
-__all__ = ["level_neck", "neck_rim"]
+__all__ = ["level_neck", "neck_rim", "with_level_neck"]
 
 _DOWN = 0.7
 """How far below its lowest point the rim is drawn, as a share of the height of the markers (our choice: a
 picture that is framed a little below the chin then shows neck down to its edge)."""
 
 
+@functools.lru_cache(maxsize=16)
 def neck_rim(mesh: Mesh) -> IntArray:
     """Return the vertices of the lowest open edge of the skin; none when that is not below the face.
 
@@ -70,3 +72,17 @@ def level_neck(mesh: Mesh) -> Mesh:
     marked_y = points[list(mesh.markers.values()), 1]
     points[rim, 1] = points[rim, 1].min() - _DOWN * float(np.ptp(marked_y))
     return replace(mesh, vertices_mm=frozen(points))
+
+
+def with_level_neck(mesh: Mesh, vertices_mm: npt.ArrayLike) -> FloatArray:
+    """Return a pose of a mesh, (n_vertices, 3) mm, with the rim of its neck where :func:`level_neck` has it.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    vertices_mm : (n_vertices, 3), mm
+    """
+    rim = neck_rim(mesh)
+    points = np.array(vertices_mm, float)
+    points[rim] = level_neck(mesh).vertices_mm[rim]
+    return points

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from PIL import Image
 
 from corpus_tools.core import FloatArray, Mesh
+from corpus_tools.mesh import with_level_neck
 from corpus_tools.render.scene import scene
 from corpus_tools.render.surfaces import DrawnPart, drawn_part
 
@@ -86,7 +87,7 @@ class MovingHead:
     def __init__(
         self, mesh: Mesh, poses_mm: npt.ArrayLike, *, size: tuple[int, int] = (1280, 720), **options: Any
     ) -> None:
-        self.size = size
+        self.mesh, self.size = mesh, size
         self.plotter = scene(mesh, size=size, **options)
         self.shown = [_Shown(self.plotter.actors[n], drawn_part(mesh, n)) for n in mesh.part_names]
         poses = np.asarray(poses_mm).reshape(-1, 3)
@@ -107,7 +108,7 @@ class MovingHead:
 
     def draw(self, vertices_mm: npt.ArrayLike) -> npt.NDArray[np.uint8]:
         """Return the picture of a pose, (height, width, 3)."""
-        vertices = np.asarray(vertices_mm, float)
+        vertices = with_level_neck(self.mesh, vertices_mm)
         for part in self.shown:
             part.show(vertices)
         self.plotter.reset_camera_clipping_range()

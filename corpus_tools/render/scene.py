@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from corpus_tools.core import FloatArray, Mesh, MissingExtraError
+from corpus_tools.mesh import with_level_neck
 from corpus_tools.render.probe import apply_window, probe_offscreen
 from corpus_tools.render.surfaces import part_surface
 
@@ -65,7 +66,7 @@ def scene(
     if not status.ok:
         raise MissingExtraError(status.reason)
     apply_window(status)
-    vertices = np.asarray(mesh.vertices_mm if vertices_mm is None else vertices_mm, float)
+    vertices = with_level_neck(mesh, mesh.vertices_mm if vertices_mm is None else vertices_mm)
     plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
     plotter.set_background(BACKGROUND)
     for part in mesh.part_names:

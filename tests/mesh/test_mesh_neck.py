@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from corpus_tools.mesh import CHARACTERS, bundled_head, level_neck, neck_rim
+from corpus_tools.mesh import CHARACTERS, bundled_head, level_neck, neck_rim, with_level_neck
 
 
 @pytest.mark.parametrize("name", list(CHARACTERS))
@@ -32,3 +32,13 @@ def test_a_skin_that_is_open_at_the_face_only_stays_as_it_is():
     assert len(neck_rim(cut)) == 0 or cut.vertices_mm[neck_rim(cut), 1].max() < low + 60.0
     bare = replace(head, markers={})
     assert level_neck(bare) is bare
+
+
+def test_a_pose_keeps_everything_but_the_rim():
+    mesh = bundled_head()
+    pose = mesh.vertices_mm + np.random.default_rng(0).normal(size=mesh.vertices_mm.shape)
+    drawn, rim = with_level_neck(mesh, pose), neck_rim(mesh)
+    others = np.setdiff1d(np.arange(mesh.n_vertices), rim)
+    np.testing.assert_array_equal(drawn[others], pose[others])
+    assert np.ptp(drawn[rim, 1]) == 0
+    assert drawn[rim, 1].max() < mesh.vertices_mm[rim, 1].min()
