@@ -138,7 +138,7 @@ def synth(capsys, *args):
     ("word", "args"),
     [
         ("Known: mp4, frames", ["--export", "hologram"]),
-        ("film.rate_hz", ["--export", "mp4", "--film-fps", "0"]),
+        ("--film-fps 0", ["--export", "mp4", "--film-fps", "0"]),
         ("is there already", ["--export", "frames"]),
     ],
 )
