@@ -73,9 +73,9 @@ def _split(
     corpus: Path, test_corpus: Path | None, folds: int | None, alone: bool, seed: int, progress: Progress
 ) -> tuple[RawCorpus, tuple[Fold, ...], str]:
     """Return the recordings, which of them are tested together, and how that is called."""
-    raw = read_corpus(corpus, progress)
+    raw = read_corpus(corpus, progress, keep_sound=False)
     if test_corpus is not None:
-        both = joined_corpora(raw, read_corpus(test_corpus, progress))
+        both = joined_corpora(raw, read_corpus(test_corpus, progress, keep_sound=False))
         tested = both.names[len(raw.names) :]
         return both, one_split(raw.names, tested), f"test corpus of {len(tested)} sentences"
     if alone:

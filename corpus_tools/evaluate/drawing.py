@@ -30,9 +30,11 @@ def _text(x: float, y: float, text: str, anchor: str = "middle", extra: str = ""
     return f'<text {place} fill="{_INK}" {_FONT} {extra}>{escape(text)}</text>'
 
 
-def _line(x1: float, y1: float, x2: float, y2: float, colour: str, width: float = 1.0) -> str:
+def _line(
+    x1: float, y1: float, x2: float, y2: float, colour: str, width: float = 1.0, dashes: str = "none"
+) -> str:
     place = f'x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"'
-    return f'<line {place} stroke="{colour}" stroke-width="{width}"/>'
+    return f'<line {place} stroke="{colour}" stroke-width="{width}" stroke-dasharray="{dashes}"/>'
 
 
 def _dot(x: float, y: float) -> str:
@@ -46,10 +48,11 @@ def _svg(width: float, height: float, title: str, parts: Sequence[str]) -> str:
     )
 
 
-def interval_plot(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
-    """Return a dot with its interval for every row, the axis below."""
+def interval_plot(rows: Sequence[tuple[str, Estimate]], title: str, natural: float | None = None) -> str:
+    """Return a dot with its interval for every row, the axis below, and a dashed line at natural speech."""
     left, width, pitch, top = 8 + 7.0 * max(len(name) for name, _ in rows), 300.0, 22.0, 26.0
-    at = ticks(min(e.low for _, e in rows), max(e.high for _, e in rows))
+    marks = [] if natural is None else [natural]
+    at = ticks(min([e.low for _, e in rows] + marks), max([e.high for _, e in rows] + marks))
     scale = width / (at[-1] - at[0])
     bottom = top + pitch * len(rows)
 
@@ -59,6 +62,8 @@ def interval_plot(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
     parts = [_text(left, 14, title, "start", 'font-weight="600"')]
     for tick in at:
         parts += [_line(x(tick), top, x(tick), bottom, _GRID), _text(x(tick), bottom + 16, f"{tick:.4g}")]
+    if natural is not None:
+        parts.append(_line(x(natural), top, x(natural), bottom, _INK, 1, "4 3"))
     for k, (name, found) in enumerate(rows):
         y = top + pitch * (k + 0.5)
         parts += [
@@ -69,11 +74,13 @@ def interval_plot(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
     return _svg(left + width + 24, bottom + 24, title, parts)
 
 
-def scatter_plot(points: Sequence[tuple[str, float, float]], x_title: str, y_title: str) -> str:
-    """Return named points, each labelled beside its dot; labels that would meet are moved apart."""
+def scatter_plot(
+    points: Sequence[tuple[str, float, float]], x_title: str, y_title: str, natural_y: float
+) -> str:
+    """Return named points, labels moved apart where they would meet, and a dashed line at natural speech."""
     left, top, width, height = 56.0, 12.0, 380.0, 300.0
     xs = ticks(min(x for _, x, _ in points), max(x for _, x, _ in points))
-    ys = ticks(min(y for _, _, y in points), max(y for _, _, y in points))
+    ys = ticks(min([y for _, _, y in points] + [natural_y]), max(y for _, _, y in points))
     parts = []
     for value in xs:
         x = left + (value - xs[0]) / (xs[-1] - xs[0]) * width
@@ -81,6 +88,8 @@ def scatter_plot(points: Sequence[tuple[str, float, float]], x_title: str, y_tit
     for value in ys:
         y = top + height - (value - ys[0]) / (ys[-1] - ys[0]) * height
         parts += [_line(left, y, left + width, y, _GRID), _text(left - 6, y + 4, f"{value:.4g}", "end")]
+    level = top + height - (natural_y - ys[0]) / (ys[-1] - ys[0]) * height
+    parts.append(_line(left, level, left + width, level, _INK, 1, "4 3"))
     taken: list[tuple[float, float]] = []
     for name, value_x, value_y in sorted(points, key=lambda p: -p[2]):
         x = left + (value_x - xs[0]) / (xs[-1] - xs[0]) * width

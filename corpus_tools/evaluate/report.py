@@ -57,15 +57,22 @@ _READ = (
     "speaker's own repetition of the same words does (row <i>repetition</i>), and moves less than speech: "
     "a small error with a dynamic range below 1 and a large Fréchet distance is smoothness, not quality. "
     "The row <i>natural</i> is the recording itself, at the rate of the predictions. Intervals are 95 %, "
-    "over sentences resampled within their folds; ratios are resampled together."
+    "over sentences resampled within their folds; ratios are resampled together, and bold where the interval "
+    "leaves out 1."
 )
 
 
-def _cell(found: Estimate | None) -> str:
+def _cell(found: Estimate | None, clear: bool = False) -> str:
+    """Return a value over its interval; `clear` values stand out: their interval does not hold 1."""
     if found is None:
         return "<td></td>"
-    spread = f"<br><small>{found.low:.3g} – {found.high:.3g}</small>" if found.high > found.low else ""
-    return f"<td>{found.value:.3f}{spread}</td>"
+    spread = f"<br><small>{found.low:.3f} – {found.high:.3f}</small>" if found.high > found.low else ""
+    value = f"<b>{found.value:.3f}</b>" if clear else f"{found.value:.3f}"
+    return f"<td>{value}{spread}</td>"
+
+
+def _ratio_cell(found: Estimate | None) -> str:
+    return _cell(found, clear=found is not None and not found.low <= 1.0 <= found.high)
 
 
 def _arrow(name: str) -> str:
@@ -94,7 +101,7 @@ def _ratios(table: Table, metric: str, methods: Sequence[str]) -> str:
     head = "".join(f'<th scope="col">{escape(b)}</th>' for b in methods)
     rows = "".join(
         f'<tr><th scope="row">{escape(a)}</th>'
-        + "".join(_cell(table.ratios.get((a, b, metric))) for b in methods)
+        + "".join(_ratio_cell(table.ratios.get((a, b, metric))) for b in methods)
         + "</tr>"
         for a in methods
     )
@@ -109,29 +116,51 @@ def _against(table: Table, methods: Sequence[str]) -> str:
     return "".join(_ratios(table, m, methods) for m in _RATIOS) if len(methods) > 1 else ""
 
 
-def _figures(table: Table) -> str:
-    plots = []
-    for name in ("rmse", "r_aperture", "dynamic_range", "frechet"):
-        metric = METRICS[name]
-        rows = [(m, table.values[m, name]) for m in table.methods if (m, name) in table.values]
-        if rows:
-            unit = f" ({metric.unit})" if metric.unit else ""
-            plots.append(
-                f"<figure>{interval_plot(rows, f'{name}{unit}{_arrow(name)}')}"
-                f"<figcaption>{escape(metric.summary)}</figcaption></figure>"
-            )
+def _figure(table: Table, name: str, methods: Sequence[str]) -> str:
+    """Return one metric of all methods, natural speech as a line where it is not simply perfect."""
+    metric = METRICS[name]
+    rows = [(m, table.values[m, name]) for m in methods if (m, name) in table.values]
+    if not rows:
+        return ""
+    natural = table.values[NATURAL, name].value if name in _REALISM else None
+    unit = f" ({metric.unit})" if metric.unit else ""
+    line = " Dashed: natural speech." if natural is not None else ""
+    return (
+        f"<figure>{interval_plot(rows, f'{name}{unit}{_arrow(name)}', natural)}"
+        f"<figcaption>{escape(metric.summary)}{line}</figcaption></figure>"
+    )
+
+
+def _figures(table: Table, methods: Sequence[str]) -> str:
+    plots = [_figure(table, name, methods) for name in ("rmse", "r_aperture", "dynamic_range", "frechet")]
+    values = table.values
     points = [
-        (m, table.values[m, "rmse"].value, table.values[m, "frechet"].value)
-        for m in table.methods
-        if (m, "rmse") in table.values and (m, "frechet") in table.values
+        (m, values[m, "rmse"].value, values[m, "frechet"].value)
+        for m in methods
+        if (m, "rmse") in values and (m, "frechet") in values
     ]
     if points:
-        drawn = scatter_plot(points, "error: rmse (mm)", "distance from natural speech: frechet")
+        natural = values[NATURAL, "frechet"].value
+        drawn = scatter_plot(points, "error: rmse (mm)", "distance from natural speech: frechet", natural)
         plots.append(
-            f"<figure>{drawn}<figcaption>Accuracy against realism: both are good at the lower left."
-            "</figcaption></figure>"
+            f"<figure>{drawn}<figcaption>Accuracy against realism: both are good at the lower left. "
+            "Dashed: natural speech.</figcaption></figure>"
         )
     return "".join(plots)
+
+
+def _settings(about: Mapping[str, Any]) -> str:
+    """Return the methods with all their settings."""
+    rows = "".join(
+        f"<dt>{escape(label)}</dt><dd>"
+        f"{escape(', '.join(f'{k} = {_word(v)}' for k, v in settings.items()) or 'no settings')}</dd>"
+        for label, settings in about.get("methods", {}).items()
+    )
+    return f"<dl>{rows}</dl>" if rows else ""
+
+
+def _word(value: Any) -> str:
+    return {True: "on", False: "off"}[value] if isinstance(value, bool) else str(value)
 
 
 def _about(about: Mapping[str, Any], table: Table) -> str:
@@ -166,6 +195,7 @@ def report_html(table: Table, about: Mapping[str, Any], failures: Sequence[tuple
         f"<dt>{escape(m.name)}</dt><dd>{escape(m.summary)} <small>{escape(m.mask)}</small></dd>"
         for m in METRICS.values()
     )
+    sections.append(("Settings of the methods", _settings(about)))
     sections.append(("What the metrics are", f"<dl>{terms}</dl>"))
     body = "".join(f"<h2>{title}</h2>{content}" for title, content in sections if content)
     return (
@@ -173,5 +203,5 @@ def report_html(table: Table, about: Mapping[str, Any], failures: Sequence[tuple
         f"<title>Evaluation on held-out sentences</title>"
         f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head><body>'
         f"<h1>Evaluation on held-out sentences</h1><p><small>{_about(about, table)}</small></p>"
-        f"<p>{_READ}</p>{_figures(table)}{body}</body></html>\n"
+        f"<p>{_READ}</p>{_figures(table, made)}{body}</body></html>\n"
     )

@@ -35,6 +35,9 @@ PAIRED = (
 """Metrics by which methods are set against each other."""
 
 
+SMALLEST_SCALE = 1e-6
+
+
 @dataclass(frozen=True, slots=True)
 class Table:
     """Values of every metric of every method.
@@ -54,6 +57,11 @@ class Table:
     ratios: dict[tuple[str, str, str], Estimate]
 
 
+def _is_scale(found: Drawn | None) -> bool:
+    """Whether something can be divided by a value: one that is 0 but for rounding is no scale."""
+    return found is not None and abs(found.value) > SMALLEST_SCALE
+
+
 def tabulate(evaluation: Evaluation, seed: int = 0) -> Table:
     """Return values with 95 % intervals over sentences, and paired ratios of all methods."""
     counts = resamples(evaluation.groups, seed)
@@ -66,7 +74,7 @@ def tabulate(evaluation: Evaluation, seed: int = 0) -> Table:
         (a, b, metric): ratio(drawn[a, metric], drawn[b, metric])
         for metric in PAIRED
         for a, b in permutations(evaluation.methods, 2)
-        if a not in (NATURAL, REPETITION) and (a, metric) in drawn and (b, metric) in drawn
+        if a not in (NATURAL, REPETITION) and (a, metric) in drawn and _is_scale(drawn.get((b, metric)))
     }
     return Table(
         evaluation.methods,

@@ -93,7 +93,11 @@ def face_only(capture: Capture) -> Capture:
 
 
 def _load(
-    description: CorpusDescription, files: Sequence[RecordingFiles], phones: PhoneSet, progress: Progress
+    description: CorpusDescription,
+    files: Sequence[RecordingFiles],
+    phones: PhoneSet,
+    progress: Progress,
+    keep_sound: bool,
 ) -> tuple[list[tuple[Capture, Utterance]], dict[str, str]]:
     loaded, skipped, tiers = [], {}, []
     for index, item in enumerate(files):
@@ -114,6 +118,8 @@ def _load(
         except WorkbenchError as error:
             skipped[item.id] = str(error)
             continue
+        if not keep_sound:
+            capture, utterance = replace(capture, audio=None), replace(utterance, audio=None)
         loaded.append((capture, utterance))
     check_word_tier(description, tiers)
     return loaded, skipped
@@ -144,8 +150,16 @@ def _usable(
     return [(c if len(keep) == len(c.names) else chosen_markers(c, keep), u) for c, u in kept]
 
 
-def read_corpus(folder: str | Path, progress: Progress = silent) -> RawCorpus:
+def read_corpus(folder: str | Path, progress: Progress = silent, keep_sound: bool = True) -> RawCorpus:
     """Read every usable recording of a corpus; nothing is cleaned yet.
+
+    Parameters
+    ----------
+    folder : path
+    progress : callable
+        ``progress(fraction, what)``; may raise to cancel.
+    keep_sound : bool
+        Keep the sound of the recordings, which takes more memory than their motion.
 
     Raises
     ------
@@ -155,7 +169,7 @@ def read_corpus(folder: str | Path, progress: Progress = silent) -> RawCorpus:
     description = read_description(folder)
     phones = phone_set(description.phones)
     files = [f for f in find_recordings(description) if f.id not in description.exclude]
-    loaded, skipped = _load(description, files, phones, progress)
+    loaded, skipped = _load(description, files, phones, progress, keep_sound)
     loaded = _usable(description, loaded, skipped, phones.silence)
     if not files:
         raise CorpusError(

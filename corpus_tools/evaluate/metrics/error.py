@@ -38,7 +38,7 @@ def _error(comparison: Comparison, columns: IntArray) -> tuple[FloatArray, Float
 
 
 def _region(comparison: Comparison, regions: Sequence[str] | None) -> FloatArray:
-    """RMSE of some regions: sqrt(mean over frames and markers of |made - recorded|^2), mm."""
+    """Return the RMSE of some regions, mm."""
     columns = comparison.columns(regions)
     if regions and not set(regions) & set(comparison.capture.regions):
         return np.array([np.nan])
@@ -54,7 +54,7 @@ for _name, _regions, _mask in (
     ("rmse_face", None, "all face markers"),
 ):
     _share = partial(_region, regions=_regions)
-    _share.__doc__ = f"RMSE over the {_mask}: sqrt(mean over frames and markers of |made - recorded|^2)."
+    _share.__doc__ = f"RMSE over the {_mask}: sqrt(mean over frames and markers of |made - recorded|²)."
     METRICS.add(
         _name,
         Metric(_name, "mm", "low", f"{_mask}, captured frames of speech", _share, mean_of_sentences),

@@ -18,7 +18,7 @@ _WORDS = "lips and chin, captured frames of words that others hold between the s
 
 @metric("word_rmse", unit="mm", better="low", mask=_WORDS, combine=root_quotient, words_only=True)
 def _error(comparison: Comparison) -> FloatArray:
-    """RMSE in repeated words: sqrt(mean over frames and markers of |made - recorded|^2), pooled."""
+    """RMSE in repeated words: sqrt(mean over frames and markers of |made - recorded|²), pooled."""
     here, columns = comparison.in_words, comparison.natural.columns
     error = comparison.made_mm[here][:, columns] - comparison.truth_mm[here][:, columns]
     seen = comparison.measured[here][:, columns]
