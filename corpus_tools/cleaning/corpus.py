@@ -10,7 +10,13 @@ import numpy.typing as npt
 
 from corpus_tools.cleaning.face_model import face_model
 from corpus_tools.cleaning.filling import AUTO, fill_gaps
-from corpus_tools.cleaning.head_motion import HeadMotion, reference_shape, remove_head_motion
+from corpus_tools.cleaning.head_motion import (
+    HeadMotion,
+    fitted_frames,
+    reference_shape,
+    remove_head_motion,
+)
+from corpus_tools.cleaning.head_support import supporting_columns
 from corpus_tools.cleaning.kalman import kalman_smooth
 from corpus_tools.cleaning.outliers import Outliers, find_outliers, usual_spread_mm, without_outliers
 from corpus_tools.cleaning.rehearsal import REHEARSED, rehearse
@@ -88,6 +94,25 @@ def _checked(
     return clean, list(outliers), slips
 
 
+def _head(
+    captures: Sequence[Capture],
+    columns: Sequence[int],
+    allow_scale: bool,
+    cutoff_mm: float,
+    head_support: bool,
+) -> tuple[list[int], FloatArray]:
+    """Return the markers that find the head, and its shape; the head markers alone where none can help."""
+    own = list(columns)
+    reference = reference_shape(captures, own, allow_scale, cutoff_mm)
+    if not head_support:
+        return own, reference
+    every = [*own, *supporting_columns(captures, reference, own, allow_scale, cutoff_mm)]
+    whole = any(np.isfinite(np.asarray(c.positions_mm)[:, every]).all(axis=(1, 2)).any() for c in captures)
+    if len(every) == len(own) or not whole:
+        return own, reference
+    return every, reference_shape(captures, every, allow_scale, cutoff_mm)
+
+
 def _smoothed(filled: Capture, fill_sd_mm: FloatArray, cutoff_hz: float) -> tuple[Capture, FloatArray]:
     smooth, sd_mm = kalman_smooth(filled, cutoff_hz)
     of_samples = np.sqrt((sd_mm**2).mean(axis=2))
@@ -102,6 +127,7 @@ def clean_captures(
     cutoff_hz: float = 10.0,
     head_cutoff_mm: float = 1.0,
     iterations: int = 6,
+    head_support: bool = True,
     gap_method: str = AUTO,
     gap_longest_s: float = 1.0,
     gap_doubt_mm: float = 1.0,
@@ -128,6 +154,8 @@ def clean_captures(
         Of the Kalman smoother, Hz.
     head_cutoff_mm, iterations
         As of :func:`~corpus_tools.cleaning.head_motion.estimate_head_motion`.
+    head_support : bool
+        Let markers of the upper face that hardly move against the head take part in finding it.
     gap_method, gap_longest_s, gap_doubt_mm
         As of :func:`~corpus_tools.cleaning.filling.fill_gaps`.
     gap_components : int
@@ -150,13 +178,16 @@ def clean_captures(
     report = progress or (lambda fraction, what: None)
     report(0.0, "finding the head")
     known = range(len(captures)) if learn_from is None else learn_from
-    reference = reference_shape([captures[i] for i in known], columns, allow_scale, head_cutoff_mm)
+    fitting, reference = _head(
+        [captures[i] for i in known], columns, allow_scale, head_cutoff_mm, head_support
+    )
     stable, motions = [], []
     for index, capture in enumerate(captures):
         report(0.2 + 0.4 * index / len(captures), "removing head motion")
         try:
+            fitted_frames(capture.positions_mm, columns)  # markers of the face help, and do not stand in
             still, motion = remove_head_motion(
-                capture, reference, columns, allow_scale, head_cutoff_mm, iterations
+                capture, reference, fitting, allow_scale, head_cutoff_mm, iterations
             )
         except MotionError as error:
             name = names[index] if names else f"recording {index + 1}"

@@ -10,7 +10,14 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from corpus_tools.core import BoolArray, Capture, FloatArray, FrameFlag, MotionError, step
 
-__all__ = ["REFERENCE_FRAMES", "HeadMotion", "estimate_head_motion", "reference_shape", "remove_head_motion"]
+__all__ = [
+    "REFERENCE_FRAMES",
+    "HeadMotion",
+    "estimate_head_motion",
+    "fitted_frames",
+    "reference_shape",
+    "remove_head_motion",
+]
 
 REFERENCE_FRAMES = 25
 """Frames of each recording that the reference is made of, at most."""
@@ -74,6 +81,25 @@ def _can_be_fitted(points: FloatArray, seen: BoolArray) -> BoolArray:
     return np.asarray((seen.sum(axis=1) >= 3) & (spread[:, 1] > 1e-6 * spread[:, 2]))
 
 
+def fitted_frames(positions_mm: FloatArray, columns: Sequence[int]) -> BoolArray:
+    """Return the frames in which the head can be found by the markers `columns`, (n_frames,).
+
+    Raises
+    ------
+    MotionError
+        No frame shows 3 of them that are not on one line.
+    """
+    points = np.asarray(positions_mm, dtype=np.float64)[:, np.asarray(columns, dtype=np.int64)]
+    seen = np.asarray(np.isfinite(points).all(axis=2))
+    fitted = _can_be_fitted(np.where(seen[..., None], points, 0.0), seen)
+    if not fitted.any():
+        raise MotionError(
+            "Head motion needs at least 3 head markers, not on one line, seen together in a frame; "
+            "name others in reference_markers."
+        )
+    return fitted
+
+
 def _interpolated(motion: HeadMotion) -> HeadMotion:
     """Give frames without a fit a pose between those of their neighbours; at the ends the nearest one's."""
     good, lost = np.flatnonzero(motion.fitted), np.flatnonzero(~motion.fitted)
@@ -131,12 +157,7 @@ def estimate_head_motion(
     reference = np.asarray(reference_mm, dtype=np.float64)[chosen]
     seen = np.asarray(np.isfinite(points).all(axis=2))
     points = np.where(seen[..., None], points, 0.0)
-    fitted = _can_be_fitted(points, seen)
-    if not fitted.any():
-        raise MotionError(
-            "Head motion needs at least 3 head markers, not on one line, seen together in a frame; "
-            "name others in reference_markers."
-        )
+    fitted = fitted_frames(positions_mm, columns)
     points[~fitted] = reference  # any pose will do: it is replaced by that of a neighbour
     base = np.where(fitted[:, None], seen, True).astype(np.float64)
     weights = base

@@ -75,6 +75,9 @@ class CleaningSettings(Section):
         1.0, ge=0.001, le=20, description="Residual at which a head marker is doubted, mm."
     )
     head_iterations: int = Field(6, ge=1, le=50, description="Reweighting rounds of the head-motion fit.")
+    head_support: bool = Field(
+        True, description="Let upper-face markers that hardly move help the head markers to find the head."
+    )
     gap_method: str = Field(
         "auto",
         description="Gap filling: auto (per gap, the best in rehearsal), pca-gp, gp, dct (paper A), kalman.",

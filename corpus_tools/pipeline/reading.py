@@ -264,6 +264,7 @@ def clean_corpus(
         cutoff_hz=settings.cutoff_hz,
         head_cutoff_mm=settings.head_cutoff_mm,
         iterations=settings.head_iterations,
+        head_support=settings.head_support,
         gap_method=settings.gap_method,
         gap_longest_s=settings.gap_longest_s,
         gap_doubt_mm=settings.gap_doubt_mm,

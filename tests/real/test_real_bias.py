@@ -35,7 +35,9 @@ def corpora_of_grid(corpora, tmp_path_factory):
             "reference_markers": "head*",
         },
     )
-    freed = open_corpus(folder)
+    freed = open_corpus(
+        folder, config_with(Config(), cleaning__head_support=False)
+    )  # as decision 009 measured
     before = tuple(replace(r, capture=freed.recorded(r.name)) for r in freed.recordings)
     model = prepare_selection(build_inventory(before), freed.phones)
     lips = lip_model(before, freed.phones, Config().closure.components)

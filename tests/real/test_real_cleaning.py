@@ -43,12 +43,12 @@ def columns(captures):
 
 @pytest.fixture(scope="module")
 def similar(captures, columns):
-    return clean_captures(list(captures.values()), columns, allow_scale=True)
+    return clean_captures(list(captures.values()), columns, allow_scale=True, head_support=False)
 
 
 @pytest.fixture(scope="module")
 def rigid(captures, columns):
-    return clean_captures(list(captures.values()), columns, allow_scale=False)
+    return clean_captures(list(captures.values()), columns, allow_scale=False, head_support=False)
 
 
 def posture_sd_mm(cleaned, utterances):
@@ -73,10 +73,19 @@ def test_scale_brings_the_recordings_together(rigid, similar, utterances):
 
 
 def test_head_markers_alone_hold_the_face_less_well(captures, similar, utterances):
-    only_head = clean_captures(list(captures.values()), list(range(66, 73)), allow_scale=True)
+    """Alone 2.4 mm, with markers named by hand 1.8 mm, with those found to be steady 1.67 mm."""
+    only_head = list(range(66, 73))
     assert {n[:4] for n in next(iter(captures.values())).names[66:]} == {"head"}
-    worse = posture_sd_mm(only_head.captures, utterances)
-    assert worse > posture_sd_mm(similar.captures, utterances) + 0.4  # 2.4 against 1.8 mm
+    alone, supported = (
+        posture_sd_mm(
+            clean_captures(list(captures.values()), only_head, allow_scale=True, head_support=on).captures,
+            utterances,
+        )
+        for on in (False, True)
+    )
+    by_hand = posture_sd_mm(similar.captures, utterances)
+    assert alone > by_hand + 0.4
+    assert supported < by_hand - 0.1
 
 
 def unsigned_aperture_mm(capture):
