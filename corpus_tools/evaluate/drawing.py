@@ -17,8 +17,9 @@ _FONT = 'font-family="system-ui,sans-serif" font-size="12"'
 
 
 def ticks(low: float, high: float, n: int = 5) -> FloatArray:
-    """Return about `n` round numbers from below `low` to above `high`."""
-    span = max(high - low, 1e-9)
+    """Return about `n` round numbers from below `low` to above `high`, at least two of them."""
+    span = max(high - low, 1e-9, 0.02 * abs(high))
+    high = max(high, low + span)
     raw = span / n
     power = 10.0 ** np.floor(np.log10(raw))
     step = power * min((1, 2, 5, 10), key=lambda m: abs(m * power - raw))

@@ -130,14 +130,24 @@ def test_recordings_are_never_written_over(tool, corpus):
 
 
 def test_ctrl_c_leaves_nothing_behind(corpus, tmp_path):
+    methods = ",".join(f"dominance-phone:components={n}" for n in range(20, 36))  # a minute and more
     command = [sys.executable, "-c", "from corpus_tools.cli.start import run; run()"]
     process = subprocess.Popen(
-        [*command, "evaluate", str(corpus), "--leave-one-out", "--out", str(tmp_path / "o")],
+        [
+            *command,
+            "evaluate",
+            str(corpus),
+            "--leave-one-out",
+            "--methods",
+            methods,
+            "--out",
+            str(tmp_path / "o"),
+        ],
         stderr=subprocess.PIPE,
         text=True,
         env=os.environ | {"OMP_NUM_THREADS": "1"},
     )
-    time.sleep(3.0)  # fitting dominance nine times takes far longer
+    time.sleep(3.0)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=30)
     assert process.returncode == 2
