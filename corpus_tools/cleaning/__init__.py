@@ -12,6 +12,12 @@ from corpus_tools.cleaning.head_motion import (
     reference_shape,
     remove_head_motion,
 )
+from corpus_tools.cleaning.innovations import (
+    estimated_smooth,
+    likeliest_cutoffs,
+    smooth_by_components,
+    smooth_estimated,
+)
 from corpus_tools.cleaning.kalman import kalman_smooth, measurement_sd_mm, smooth_channels
 from corpus_tools.cleaning.outliers import Outliers, find_outliers, usual_spread_mm, without_outliers
 from corpus_tools.cleaning.rehearsal import Rehearsals, Trial, rehearse
@@ -30,6 +36,7 @@ __all__ = [
     "Trial",
     "clean_captures",
     "estimate_head_motion",
+    "estimated_smooth",
     "face_model",
     "fill_gaps",
     "find_outliers",
@@ -37,6 +44,7 @@ __all__ = [
     "gaps",
     "holding",
     "kalman_smooth",
+    "likeliest_cutoffs",
     "marker_gaps",
     "measurement_sd_mm",
     "neutral_pose",
@@ -45,7 +53,9 @@ __all__ = [
     "reference_shape",
     "rehearse",
     "remove_head_motion",
+    "smooth_by_components",
     "smooth_channels",
+    "smooth_estimated",
     "usual_spread_mm",
     "with_slips_marked",
     "without_outliers",

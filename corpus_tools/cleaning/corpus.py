@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,7 @@ from corpus_tools.cleaning.head_motion import (
     remove_head_motion,
 )
 from corpus_tools.cleaning.head_support import supporting_columns
+from corpus_tools.cleaning.innovations import estimated_smooth
 from corpus_tools.cleaning.kalman import kalman_smooth
 from corpus_tools.cleaning.outliers import Outliers, find_outliers, usual_spread_mm, without_outliers
 from corpus_tools.cleaning.rehearsal import REHEARSED, rehearse
@@ -24,6 +26,7 @@ from corpus_tools.cleaning.slips import Slip, find_slips, with_slips_marked
 from corpus_tools.core import BoolArray, Capture, FloatArray, MotionError, frozen
 
 Report = Callable[[float, str], None]
+Noise = Literal["cutoff", "channels", "components"]
 
 LEAST_FRAMES, LEAST_MARKERS = 240, 12
 """Of a corpus in which outliers are looked for (our choice: fewer do not tell how a face moves)."""
@@ -113,8 +116,13 @@ def _head(
     return every, reference_shape(captures, every, allow_scale, cutoff_mm)
 
 
-def _smoothed(filled: Capture, fill_sd_mm: FloatArray, cutoff_hz: float) -> tuple[Capture, FloatArray]:
-    smooth, sd_mm = kalman_smooth(filled, cutoff_hz)
+def _smoothed(
+    filled: Capture, fill_sd_mm: FloatArray, cutoff_hz: float, noise: Noise
+) -> tuple[Capture, FloatArray]:
+    if noise == "cutoff":
+        smooth, sd_mm = kalman_smooth(filled, cutoff_hz)
+    else:
+        smooth, sd_mm = estimated_smooth(filled, cutoff_hz, by_components=noise == "components")
     of_samples = np.sqrt((sd_mm**2).mean(axis=2))
     return smooth, np.where(fill_sd_mm > 0, fill_sd_mm, of_samples)
 
@@ -133,6 +141,7 @@ def clean_captures(
     gap_doubt_mm: float = 1.0,
     gap_components: int = 24,
     outliers: bool = True,
+    noise: Noise = "cutoff",
     names: Sequence[str] = (),
     learn_from: Sequence[int] | None = None,
     progress: Report | None = None,
@@ -162,6 +171,9 @@ def clean_captures(
         Of the model of the face that fills gaps.
     outliers : bool
         Whether spikes and exchanged markers are taken out (and filled, flagged) and slips are marked.
+    noise : "cutoff", "channels" or "components"
+        The smoother keeps `cutoff_hz` in all channels; or finds noise and cutoff from the innovations of each
+        channel, or of each principal component (:mod:`~corpus_tools.cleaning.innovations`).
     names : sequence of str, optional
         Of the recordings, for messages.
     learn_from : sequence of int, optional
@@ -221,7 +233,7 @@ def clean_captures(
             longest_s=gap_longest_s,
             doubt_mm=gap_doubt_mm,
         )
-        smooth, band = _smoothed(*filled, cutoff_hz)
+        smooth, band = _smoothed(*filled, cutoff_hz, noise)
         cleaned.append(smooth)
         bands.append(frozen(band))
     scales = np.concatenate([m.scale[m.fitted] for m in motions])

@@ -10,7 +10,14 @@ import numpy.typing as npt
 from corpus_tools.cleaning.gaps import frame_ranges
 from corpus_tools.core import BoolArray, Capture, FloatArray, FrameFlag, IntArray, MotionError, frozen, step
 
-__all__ = ["DOUBTFUL_GAP_S", "kalman_smooth", "measurement_sd_mm", "process_noise", "smooth_channels"]
+__all__ = [
+    "DOUBTFUL_GAP_S",
+    "filter_gains",
+    "kalman_smooth",
+    "measurement_sd_mm",
+    "process_noise",
+    "smooth_channels",
+]
 
 DOUBTFUL_GAP_S = 0.1
 """A gap longer than this is bridged but marked doubtful (our choice: a lip closure can hide in it)."""
@@ -97,7 +104,7 @@ def _backward(
     return variance
 
 
-@functools.lru_cache(maxsize=16)
+@functools.lru_cache(maxsize=32)
 def _gains(pattern: bytes, rate_hz: float, cutoff_hz: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return filter gains (n, 3), smoother gains (n, 3, 3) and smoothed variances (n,) of a pattern of gaps.
 
@@ -112,6 +119,11 @@ def _gains(pattern: bytes, rate_hz: float, cutoff_hz: float) -> tuple[FloatArray
     back[:-1] = np.linalg.solve(predicted[1:], _TRANSITION @ filtered[:-1]).transpose(0, 2, 1)
     variance = _backward(predicted, filtered, back, steady)
     return frozen(gains), frozen(back), frozen(variance)
+
+
+def filter_gains(seen: BoolArray, rate_hz: float, cutoff_hz: float) -> FloatArray:
+    """Return the gains (n_frames, 3) of the filter for a pattern of gaps; 0 where nothing is seen."""
+    return _gains(np.ascontiguousarray(seen).tobytes(), rate_hz, cutoff_hz)[0]
 
 
 def smooth_channels(

@@ -71,6 +71,10 @@ class CleaningSettings(Section):
     """Paper A section 4: noise, gaps, head motion."""
 
     cutoff_hz: float = Field(10.0, ge=0.1, le=60, description="Kalman smoother: frequency kept, Hz.")
+    noise: Literal["cutoff", "channels", "components"] = Field(
+        "cutoff",
+        description="Kalman smoother: one cutoff for all, or noise estimated by channel or by component.",
+    )
     head_cutoff_mm: float = Field(
         1.0, ge=0.001, le=20, description="Residual at which a head marker is doubted, mm."
     )

@@ -270,6 +270,7 @@ def clean_corpus(
         gap_doubt_mm=settings.gap_doubt_mm,
         gap_components=settings.gap_components,
         outliers=settings.outliers,
+        noise=settings.noise,
         names=raw.names,
         learn_from=None if learn_from is None else [i for i, n in enumerate(raw.names) if n in learn_from],
         progress=progress,
