@@ -1,7 +1,7 @@
 """From raw captures to clean ones: head motion, noise, gaps, posture, neutral pose (paper A section 4)."""
 
 from corpus_tools.cleaning.bias import PhoneHalves, RecordingBias, holding, phone_halves, recording_bias
-from corpus_tools.cleaning.corpus import CleanedCorpus, clean_captures, neutral_pose
+from corpus_tools.cleaning.corpus import CleanedCorpus, clean_captures
 from corpus_tools.cleaning.face_model import FaceModel, face_model
 from corpus_tools.cleaning.fillers import GAP_FILLERS
 from corpus_tools.cleaning.filling import fill_gaps
@@ -19,6 +19,7 @@ from corpus_tools.cleaning.innovations import (
     smooth_estimated,
 )
 from corpus_tools.cleaning.kalman import kalman_smooth, measurement_sd_mm, smooth_channels
+from corpus_tools.cleaning.neutral import neutral_pose
 from corpus_tools.cleaning.outliers import Outliers, find_outliers, usual_spread_mm, without_outliers
 from corpus_tools.cleaning.rehearsal import Rehearsals, Trial, rehearse
 from corpus_tools.cleaning.slips import Slip, find_slips, with_slips_marked

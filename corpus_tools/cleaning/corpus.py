@@ -1,4 +1,4 @@
-"""All recordings of a corpus brought into one head-stabilised space, smoothed; and its neutral pose."""
+"""All recordings of a corpus brought into one head-stabilised space, smoothed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from corpus_tools.cleaning.face_model import face_model
 from corpus_tools.cleaning.filling import AUTO, fill_gaps
@@ -31,7 +30,7 @@ Noise = Literal["cutoff", "channels", "components"]
 LEAST_FRAMES, LEAST_MARKERS = 240, 12
 """Of a corpus in which outliers are looked for (our choice: fewer do not tell how a face moves)."""
 
-__all__ = ["CleanedCorpus", "clean_captures", "neutral_pose"]
+__all__ = ["CleanedCorpus", "clean_captures"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -246,26 +245,3 @@ def clean_captures(
         tuple(found),
         tuple(slips),
     )
-
-
-def neutral_pose(captures: Sequence[Capture], quiet: Sequence[npt.NDArray[np.bool_]]) -> FloatArray:
-    """Return the neutral pose (n_markers, 3) mm: the median of the quiet frames of all recordings.
-
-    Parameters
-    ----------
-    captures : sequence of Capture
-    quiet : sequence of (n_frames,) bool
-        Frames of silence with closed lips. The median is taken over the whole corpus: the leading silence of
-        one recording is not a stable neutral (paper A section 6 asks for "a neutral facial pose"; how it is
-        found is our choice).
-
-    Raises
-    ------
-    MotionError
-        No frame is quiet.
-    """
-    frames = [np.asarray(c.positions_mm)[q] for c, q in zip(captures, quiet, strict=True)]
-    every = np.concatenate(frames) if frames else np.zeros((0, 1, 3))
-    if not len(every):
-        raise MotionError("No frame of the corpus is silent with closed lips, so it shows no neutral pose.")
-    return frozen(np.median(every, axis=0))

@@ -107,9 +107,11 @@ def _away(capture: Capture, model: FaceModel) -> FloatArray:
     return np.where(np.isfinite(bridged), bridged - model.mean_mm, 0.0)
 
 
-def residuals_mm(capture: Capture, model: FaceModel) -> FloatArray:
-    """Return how far each marker lies from what all the others tell, (n_frames, n_markers, 3) mm."""
-    return _residuals(_away(capture, model), _precision(model))
+def residuals_mm(capture: Capture, model: FaceModel, markers: IntArray) -> FloatArray:
+    """Return how far some markers lie from what the rest of them tell, (n_frames, n_markers, 3) mm."""
+    block = (3 * markers[:, None] + np.arange(3)).ravel()
+    precision = np.linalg.inv(model.covariance_mm2[np.ix_(block, block)])
+    return _residuals(_away(capture, model)[:, block], np.asarray(precision))
 
 
 def usual_spread_mm(captures: Sequence[Capture], model: FaceModel) -> FloatArray:

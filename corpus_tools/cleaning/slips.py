@@ -9,8 +9,9 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from corpus_tools.cleaning.face_model import FaceModel
+from corpus_tools.cleaning.head_motion import estimate_head_motion
 from corpus_tools.cleaning.outliers import residuals_mm
-from corpus_tools.core import Capture, FloatArray, FrameFlag, step
+from corpus_tools.core import Capture, FloatArray, FrameFlag, IntArray, MotionError, step
 
 __all__ = ["Slip", "find_slips", "with_slips_marked"]
 
@@ -69,20 +70,40 @@ def _step(track: FloatArray, rate_hz: float) -> tuple[int, FloatArray] | None:
     return frame - half + int(np.argmax(along[near] > 0.5)), np.asarray(after - before)
 
 
-def _against_the_face(capture: Capture, columns: Sequence[int]) -> FloatArray:
-    """Return by how much the quiet half of the face is displaced as a whole, (n_frames, 3) mm."""
-    positions = np.asarray(capture.positions_mm)
-    face = np.setdiff1d(np.arange(len(capture.names)), columns)
+def _face_as_whole(positions: FloatArray, face: IntArray, rate_hz: float) -> FloatArray:
+    """Return how the quiet half of the face is displaced as a whole, (n_frames, 3) mm.
+
+    The median over markers of the displacement from the first half second: a slip in the middle of a
+    recording has no place that is usual.
+    """
     seen = face[np.isfinite(positions[:, face]).all(axis=(0, 2))]
     if len(seen) < 4:
         return np.zeros((len(positions), 3))
-    away = positions[:, seen] - np.median(positions[:, seen], axis=0)
-    quiet = np.argsort(np.median(np.linalg.norm(away, axis=2), axis=0))[: max(4, len(seen) // 2)]
-    return np.asarray(np.median(away[:, quiet], axis=1))
+    away = positions[:, seen] - np.median(positions[: max(1, round(AT_ENDS_S * rate_hz)), seen], axis=0)
+    quiet = np.argsort(np.median(np.linalg.norm(np.diff(away, axis=0), axis=2), axis=0))
+    return np.asarray(np.median(away[:, quiet[: max(4, len(seen) // 2)]], axis=1))
+
+
+def _seen_from_the_head(positions: FloatArray, columns: Sequence[int]) -> FloatArray | None:
+    """Return the positions as the head markers alone hold them; None where they cannot.
+
+    Where markers of the face help to find the head, a slip is shared out between them and the jig, and its
+    better part looks like a turn of both.
+    """
+    shape = np.full(positions.shape[1:], np.nan)
+    known = [c for c in columns if np.isfinite(positions[:, c]).any()]
+    shape[known] = np.nanmedian(positions[:, known], axis=0)
+    try:
+        return estimate_head_motion(positions, shape, known, False, iterations=3).stabilise(positions)
+    except MotionError:
+        return None
 
 
 def find_slips(capture: Capture, model: FaceModel, columns: Sequence[int]) -> tuple[Slip, ...]:
     """Find markers that slid on the skin, and a slip of the head markers as one.
+
+    The head markers slip when face and head part, whichever of them the head was found by. What a marker of
+    the face should do is told by the face alone: then a jig that slips is not taken for skin that does.
 
     Parameters
     ----------
@@ -95,15 +116,17 @@ def find_slips(capture: Capture, model: FaceModel, columns: Sequence[int]) -> tu
     """
     found = []
     face = np.setdiff1d(np.arange(len(capture.names)), columns)
-    if (jig := _step(_against_the_face(capture, columns), capture.rate_hz)) is not None:
-        frame, moved = jig
-        found.append(Slip(-1, frame, float(np.linalg.norm(moved))))
-        positions = np.array(capture.positions_mm)
-        positions[frame:, face] -= moved
-        capture = replace(capture, positions_mm=positions)
-    residual = residuals_mm(capture, model)
-    for marker in face:
-        if (own := _step(residual[:, marker], capture.rate_hz)) is not None:
+    positions, rate_hz = np.array(capture.positions_mm), capture.rate_hz
+    held = _seen_from_the_head(positions, columns)
+    jig = None if held is None else _step(_face_as_whole(held, face, rate_hz), rate_hz)
+    if jig is not None:
+        frame, apart = jig
+        found.append(Slip(-1, frame, float(np.linalg.norm(apart))))
+        of_face = _face_as_whole(positions, face, rate_hz)
+        positions[frame:, face] -= np.median(of_face[frame:], axis=0) - np.median(of_face[:frame], axis=0)
+    residual = residuals_mm(replace(capture, positions_mm=positions), model, face)
+    for index, marker in enumerate(face):
+        if (own := _step(residual[:, index], capture.rate_hz)) is not None:
             found.append(Slip(int(marker), own[0], float(np.linalg.norm(own[1]))))
     return tuple(found)
 
