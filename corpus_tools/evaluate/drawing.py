@@ -78,7 +78,7 @@ def interval_plot(rows: Sequence[tuple[str, Estimate]], title: str, natural: flo
 def scatter_plot(
     points: Sequence[tuple[str, float, float]], x_title: str, y_title: str, natural_y: float
 ) -> str:
-    """Return named points, labels moved apart where they would meet, and a dashed line at natural speech."""
+    """Return numbered points, their names beside the picture, and a dashed line at natural speech."""
     left, top, width, height = 56.0, 12.0, 380.0, 300.0
     xs = ticks(min(x for _, x, _ in points), max(x for _, x, _ in points))
     ys = ticks(min([y for _, _, y in points] + [natural_y]), max(y for _, _, y in points))
@@ -92,19 +92,20 @@ def scatter_plot(
     level = top + height - (natural_y - ys[0]) / (ys[-1] - ys[0]) * height
     parts.append(_line(left, level, left + width, level, _INK, 1, "4 3"))
     taken: list[tuple[float, float]] = []
-    for name, value_x, value_y in sorted(points, key=lambda p: -p[2]):
+    key = left + width + 24.0
+    for number, (name, value_x, value_y) in enumerate(points, 1):
         x = left + (value_x - xs[0]) / (xs[-1] - xs[0]) * width
         y = top + height - (value_y - ys[0]) / (ys[-1] - ys[0]) * height
         label = y + 4
-        while any(abs(label - other) < 13 and abs(x - there) < 150 for there, other in taken):
-            label -= 13
+        while any(abs(label - other) < 12 and abs(x - there) < 14 for there, other in taken):
+            label -= 12
         taken.append((x, label))
-        parts += [
-            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{_MARK}"/>',
-            _text(x + 8, label, name, "start"),
-        ]
+        parts += [_dot(x, y), _text(x + 7, label, str(number), "start")]
+        parts.append(_text(key, top + 16.0 * number, f"{number}  {name}", "start"))
     parts += [
         _text(left + width / 2, top + height + 34, x_title),
         _text(0, 0, y_title, "middle", f'transform="translate(14 {top + height / 2:.0f}) rotate(-90)"'),
     ]
-    return _svg(left + width + 190, top + height + 42, f"{y_title} against {x_title}", parts)
+    whole = key + 30 + 7.0 * max(len(name) for name, _, _ in points)
+    tall = max(top + height + 42, top + 16.0 * (len(points) + 1))
+    return _svg(whole, tall, f"{y_title} against {x_title}", parts)

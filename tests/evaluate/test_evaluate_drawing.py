@@ -42,5 +42,8 @@ def test_every_point_lies_inside_the_picture():
     for x, y in places:
         assert 0 < float(x) < width
         assert 0 < float(y) < height
-    labels = [float(y) for y in re.findall(r'y="([\d.]+)" text-anchor="start"', drawn)]
-    assert len(set(labels)) == 5
+    numbers = re.findall(r'<text x="([\d.]+)" y="([\d.]+)" text-anchor="start"[^>]*>(\d)</text>', drawn)
+    assert [n for _, _, n in numbers] == list("12345")
+    assert len({(x, y) for x, y, _ in numbers}) == 5
+    for k in range(5):
+        assert f">{k + 1}  m{k}</text>" in drawn
