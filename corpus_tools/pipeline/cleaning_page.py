@@ -12,7 +12,7 @@ __all__ = ["cleaning_page"]
 MOST_PICTURES = 12
 """Recordings that are drawn, the worst ones (our choice: a page is read; all numbers are in the table)."""
 
-_WIDTH, _HEIGHT, _LEFT, _STRIP = 520.0, 90.0, 56.0, 10.0
+_WIDTH, _HEIGHT, _LEFT, _STRIP = 490.0, 90.0, 56.0, 10.0
 _FONT = 'font-family="system-ui,sans-serif" font-size="11" fill="#1c2127"'
 _STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;color:#1c2127;background:#fff}
