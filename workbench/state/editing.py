@@ -38,6 +38,12 @@ EDITABLE = (*SETTINGS, *_TARGET, "held_out")
 """Parameters that a person edits: what the history holds, and what undo brings back."""
 
 
+def target_of(values: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what editable values speak: ("recording", id) or ("text", words)."""
+    kind = values["target_kind"]
+    return (kind, values["text"].strip() if kind == "text" else values["sentence"])
+
+
 def default_config() -> ConfigBase:
     """Return the config in which every value is the default."""
     return config_from_dict({})
@@ -108,8 +114,7 @@ class Editing(param.Parameterized):
     @property
     def target(self) -> tuple[str, str]:
         """What is spoken: ("recording", id) or ("text", words)."""
-        text = self.target_kind == "text"
-        return (self.target_kind, self.text.strip() if text else self.sentence)
+        return target_of({n: getattr(self, n) for n in _TARGET})
 
     def begin_history(self) -> None:
         """Begin anew with the present values, which are setting A too."""
@@ -175,9 +180,10 @@ class Editing(param.Parameterized):
 
     @property
     def other_settings(self) -> dict[str, Any]:
-        """The settings of the side that is not shown; pins stay where A was kept for another target."""
+        """The settings of the side that is not shown; kept for another target, A has no pins in this one."""
         shown = (self.kept or {}) if self.side == "B" else self._aside
-        pins = shown.get("pins", ()) if self._same_target_as_a() else self.pins
+        own = self.side == "A" or self._same_target_as_a()
+        pins = shown.get("pins", ()) if own else ()
         return {n: shown.get(n, getattr(self, n)) for n in SETTINGS} | {"pins": pins}
 
     def swap_sides(self) -> bool:
@@ -192,7 +198,7 @@ class Editing(param.Parameterized):
         return True
 
     def _same_target_as_a(self) -> bool:
-        return bool(self.kept) and all(self.kept[n] == getattr(self, n) for n in _TARGET)
+        return bool(self.kept) and target_of(self.kept) == self.target
 
     @property
     def difference(self) -> str:

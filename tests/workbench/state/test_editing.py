@@ -164,6 +164,29 @@ def test_setting_a_and_b_are_swapped_and_their_difference_is_told(visit):
     assert session.difference == ""
 
 
+@pytest.mark.parametrize("words", ["the time is two", ""])
+def test_another_unit_is_compared_with_the_search_in_any_target(visit, words):
+    """Setting A was kept for the first sentence; a text, or another recording, has no pins in it."""
+    session = visit.session
+    if words:
+        session.param.update(target_kind="text", text=words)
+    else:
+        session.step_sentence(1)
+    visit.run()
+    place_with_options(visit)
+    first = visit.spoken
+    assert session.difference == ""
+    swap_unit(session, 1)
+    visit.run()
+    (pin,), second = session.pins, visit.spoken
+    assert session.difference == "pins 0 → 1"
+    for side, pins, spoken in (("A", (), first), ("B", (pin,), second)):
+        assert session.swap_sides()
+        visit.run()
+        assert (session.side, session.pins, visit.spoken) == (side, pins, spoken)
+        assert session.difference == "pins 0 → 1"
+
+
 def test_an_edit_of_a_becomes_b(visit):
     session = visit.session
     session.weighting = "linear"
