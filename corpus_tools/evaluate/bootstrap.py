@@ -1,4 +1,12 @@
-"""Values and intervals over sentences: one set of resamples for all methods, so that they can be paired."""
+"""Values and intervals over sentences: one set of resamples for all methods, so that they can be paired.
+
+Means over sentences, quotients of sums and correlations of pooled frames get the percentile interval of the
+bootstrap. A distance of distributions cannot: sentences that are drawn twice make a resample narrower than
+speech, so that every draw lies further away than all sentences together, and percentiles (and, reflected, the
+basic interval) leave out the estimate itself; BCa has no correction for draws that all lie on one side. It
+gets a jackknife interval instead: each sentence is left out once, and the spread of the logarithms of what
+comes out (our choice: a distance is never negative) is the standard error.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +19,15 @@ from corpus_tools.core import FloatArray, IntArray
 from corpus_tools.evaluate.metrics import Metric
 from corpus_tools.evaluate.natural import Natural
 
-__all__ = ["DRAWS", "Drawn", "Estimate", "drawn_values", "estimate", "ratio", "resamples"]
+__all__ = ["DRAWS", "Drawn", "Estimate", "drawn_values", "estimate", "jackknife_sd", "ratio", "resamples"]
 
 DRAWS = 1000
 """Resamples of the sentences."""
 
 LEVEL = (2.5, 97.5)
 """Percentiles of an interval: 95 %."""
+
+_NORMAL_95 = 1.959964
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +48,20 @@ class Drawn:
     ----------
     value : float
     draws : (n_draws,)
+        Empty where the jackknife says the interval.
     n : int
         Sentences that the metric says something about.
+    deleted : (n_sentences,), optional
+        The metric with one sentence left out each time; None where the bootstrap says the interval.
+    groups : (n_sentences,) int64, optional
+        Folds of `deleted`.
     """
 
     value: float
     draws: FloatArray
     n: int
+    deleted: FloatArray | None = None
+    groups: IntArray | None = None
 
 
 def resamples(groups: IntArray, seed: int = 0, n_draws: int = DRAWS) -> FloatArray:
@@ -79,20 +96,58 @@ def drawn_values(
     """
     once = np.ones((1, len(shares)))
     value = float(metric.combine(shares, once, groups, naturals)[0])
+    if metric.interval == "jackknife":
+        deleted = metric.combine(shares, 1.0 - np.eye(len(shares)), groups, naturals)
+        return Drawn(value, np.zeros(0), metric.sentences(shares), deleted, groups)
     draws = metric.combine(shares, counts, groups, naturals)
     return Drawn(value, draws, metric.sentences(shares))
 
 
+def jackknife_sd(deleted: FloatArray, groups: IntArray) -> float:
+    """Return the standard error of a statistic from its values with one sentence left out.
+
+    ::
+
+        sqrt(sum over folds of (n - 1) / n * sum over its n sentences of (value - mean of the fold)^2)
+
+    Parameters
+    ----------
+    deleted : (n_sentences,)
+        NaN where nothing is left: it does not count.
+    groups : (n_sentences,) int64
+        Folds, within which sentences are exchanged.
+    """
+    total = 0.0
+    for group in np.unique(groups):
+        mine = deleted[(groups == group) & np.isfinite(deleted)]
+        if len(mine) > 1:
+            total += (len(mine) - 1) / len(mine) * float(((mine - mine.mean()) ** 2).sum())
+    return float(np.sqrt(total))
+
+
+def _jackknife(drawn: Drawn, deleted: FloatArray, groups: IntArray) -> Estimate:
+    """Return the value with value / f and value * f, f of the spread of logarithms."""
+    if not np.isfinite(drawn.value) or drawn.value <= 0.0:
+        return Estimate(drawn.value, drawn.value, drawn.value, drawn.n)
+    logs = np.log(np.where(deleted > 0, deleted, np.nan))
+    factor = float(np.exp(_NORMAL_95 * jackknife_sd(logs, groups)))
+    return Estimate(drawn.value, drawn.value / factor, drawn.value * factor, drawn.n)
+
+
 def estimate(drawn: Drawn) -> Estimate:
-    """Return the value with its percentile interval."""
+    """Return the value with its interval: percentiles, or the jackknife where sentences were left out."""
+    if drawn.deleted is not None and drawn.groups is not None:
+        return _jackknife(drawn, drawn.deleted, drawn.groups)
     known = drawn.draws[np.isfinite(drawn.draws)]
     low, high = np.percentile(known, LEVEL) if len(known) else (np.nan, np.nan)
     return Estimate(drawn.value, float(low), float(high), drawn.n)
 
 
 def ratio(a: Drawn, b: Drawn) -> Estimate:
-    """Return a / b, resampled together: the sentences that make both large cancel."""
+    """Return a / b, sentences drawn or left out in both together: those that make both large cancel."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        value = a.value / b.value if b.value else float("nan")
+        value, n = a.value / b.value if b.value else float("nan"), min(a.n, b.n)
+        if a.deleted is not None and b.deleted is not None:
+            return estimate(Drawn(value, np.zeros(0), n, a.deleted / b.deleted, a.groups))
         draws = np.asarray(a.draws / b.draws)
-    return estimate(Drawn(value, np.where(np.isfinite(draws), draws, np.nan), min(a.n, b.n)))
+    return estimate(Drawn(value, np.where(np.isfinite(draws), draws, np.nan), n))

@@ -57,8 +57,9 @@ _READ = (
     "speaker's own repetition of the same words does (row <i>repetition</i>), and moves less than speech: "
     "a small error with a dynamic range below 1 and a large Fréchet distance is smoothness, not quality. "
     "The row <i>natural</i> is the recording itself, at the rate of the predictions. Intervals are 95 %, "
-    "over sentences resampled within their folds; ratios are resampled together, and bold where the interval "
-    "leaves out 1."
+    "over sentences: percentiles of 1000 resamples within folds; for the Fréchet distance, which resampling "
+    "makes larger, the jackknife (each sentence left out once, on a logarithmic scale). Ratios are resampled "
+    "together, and bold where the interval leaves out 1."
 )
 
 

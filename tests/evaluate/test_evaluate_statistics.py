@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,13 +11,27 @@ from hypothesis import strategies as st
 from strategies.talking import PHONES, motion_of, speak, talk
 
 from corpus_tools.core import InputError, Recording
-from corpus_tools.evaluate import METRICS, Fold, k_folds, leave_one_out, one_split
-from corpus_tools.evaluate.bootstrap import drawn_values, estimate, ratio, resamples
+from corpus_tools.evaluate import METRICS, Fold, evaluate, k_folds, leave_one_out, one_split, tabulate
+from corpus_tools.evaluate.bootstrap import drawn_values, estimate, jackknife_sd, ratio, resamples
 from corpus_tools.evaluate.metrics import Metric
 from corpus_tools.evaluate.metrics.registry import mean_of_sentences, quotient
 from corpus_tools.evaluate.repetition import RepeatedWords
+from corpus_tools.methods import parse_variant
+from corpus_tools.pipeline.reading import face_only
 
 NAMES = [f"n{i:02d}" for i in range(23)]
+
+
+class Cleaned:
+    """Recordings that need no cleaning."""
+
+    phones = PHONES
+
+    def __init__(self, recordings):
+        self.recordings = recordings
+
+    def cleaned(self, learn_from, progress):
+        return self.recordings
 
 
 @given(st.integers(2, 23), st.integers(0, 1000))
@@ -89,6 +105,33 @@ def test_sentences_without_a_value_do_not_count():
     shares = np.array([[1.0, 2.0]] * 50 + [[0.0, 0.0]] * 50)
     found = estimate(drawn_values(QUOTIENT, shares, COUNTS, GROUPS, []))
     assert (found.value, found.n) == (0.5, 50)
+
+
+def _holds(found):
+    slack = 1e-9 * max(1.0, abs(found.value))
+    return found.low - slack <= found.value <= found.high + slack
+
+
+def test_every_interval_of_a_run_holds_its_estimate():
+    """Of every metric and every paired ratio: 24 sentences in three folds, methods that move or do not."""
+    recordings = [replace(r, capture=face_only(r.capture)) for r in talk(24, words=3)]
+    methods = [parse_variant(m) for m in ("mean", "viseme-linear", "greedy:closure=off", "viterbi")]
+    folds = k_folds([r.name for r in recordings], 3)
+    table = tabulate(evaluate(Cleaned(recordings), folds, methods))
+    assert {metric for _, metric in table.values} == set(METRICS)
+    assert [key for key, found in table.values.items() if not _holds(found)] == []
+    assert [key for key, found in table.ratios.items() if not _holds(found)] == []
+    found = table.values["viterbi", "frechet"]
+    assert found.low < found.value < found.high
+
+
+@given(st.integers(0, 1000))
+def test_the_jackknife_of_a_mean_is_its_standard_error(seed):
+    values = np.random.default_rng(seed).normal(5, 1, 100)
+    means = (values.sum() - values) / 99
+    wanted = sum(n * values[g == GROUPS].var(ddof=1) for g, n in enumerate((40, 40, 20)))
+    wanted *= 1 / 100**2
+    assert jackknife_sd(means, GROUPS) == pytest.approx(np.sqrt(wanted), rel=0.05)
 
 
 def test_paired_ratios_are_sharper_than_their_parts():

@@ -145,12 +145,14 @@ def _pooled_frechet(
     mask="8 components of all face markers, captured frames of speech",
     combine=_pooled_frechet,
     per=0,
+    interval="jackknife",
 )
 def _distribution(comparison: Comparison) -> FloatArray:
     """Frechet distance of posture and velocity (8 PCs each, standardised) to natural speech not tested.
 
     The share of a sentence is n, sum x and sum x x' of its frames; distances are taken per fold against the
-    recordings outside it. A bootstrap is biased upward: compare with the row of natural speech.
+    recordings outside it. Drawing sentences twice makes it larger, so that its interval is that of the
+    jackknife; few sentences make it larger too: compare with the row of natural speech.
     """
     features = comparison.natural.features(comparison.made_mm, comparison.capture.rate_hz)
     return Moments.of(features).flat()

@@ -46,6 +46,8 @@ class Metric:
         sentence counts whose share is a number.
     words_only : bool
         It looks at repeated words only, so that a natural repetition can be measured by it too.
+    interval : {"bootstrap", "jackknife"}
+        How its 95 % interval is found; "jackknife" where resampling itself makes the value larger.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Metric:
     combine: Combine
     per: int | None = None
     words_only: bool = False
+    interval: str = "bootstrap"
 
     @property
     def summary(self) -> str:
@@ -110,12 +113,13 @@ def metric(
     combine: Combine = mean_of_sentences,
     per: int | None = None,
     words_only: bool = False,
+    interval: str = "bootstrap",
 ) -> Callable[[Share], Share]:
     """Return a decorator that enters a share as a metric; its docstring holds the formula."""
 
     def enter(share: Share) -> Share:
         amount = 1 if combine in (quotient, root_quotient) else per
-        METRICS.add(name, Metric(name, unit, better, mask, share, combine, amount, words_only))
+        METRICS.add(name, Metric(name, unit, better, mask, share, combine, amount, words_only, interval))
         return share
 
     return enter
