@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from corpus_tools.cli.common import PATH, check_out_folder, emit_json, progress_bar, say
+from corpus_tools.cli.join_facts import join_facts, join_line
 from corpus_tools.cli.targets import SpeakRequest
 from corpus_tools.config import Config, ConfigBase, config_with, load_config
 from corpus_tools.core import NoUnitError, SynthesisError, Utterance, counted
@@ -20,8 +22,10 @@ from corpus_tools.pipeline import (
     Synthesis,
     banned_pins,
     corpus_provenance,
+    listed_files,
     open_corpus,
     prepare_head,
+    remove_stale,
     speech_facts,
     synthesise,
     write_synthesis,
@@ -53,6 +57,12 @@ def _config(path: Path | None, typed: dict[str, Any]) -> ConfigBase:
     config = config_with(config, options=OPTIONS, **given)
     SEARCHES[config.selection.method]
     return config
+
+
+def _few(names: Sequence[str], most: int = 3) -> str:
+    """Return the first names, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(list(names)[:most]) + more
 
 
 def _left_out(opened: OpenCorpus) -> str:
@@ -94,6 +104,7 @@ def _summary(synthesis: Synthesis, opened: OpenCorpus, settings: ConfigBase, out
         "frames": len(synthesis.trajectory.times_s),
         "fragments": [c.unit.key for c in synthesis.selection.chosen],
         "joins": synthesis.selection.n_joins,
+        "join_peaks": join_facts(synthesis.trajectory.joins),
         "cost": synthesis.selection.total_cost,
         "banned_pins": banned_pins(settings),
         "missing_diphones": [_as_row(m) for m in missing],
@@ -102,7 +113,7 @@ def _summary(synthesis: Synthesis, opened: OpenCorpus, settings: ConfigBase, out
     }
 
 
-def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus) -> None:
+def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus, labelled: bool) -> None:
     """Print for people what came out, and what they would not see at once."""
     fragments = summary["fragments"]
     say(
@@ -110,11 +121,19 @@ def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus) -> 
         f"from {counted(len(fragments), 'fragment')} "
         f"({', '.join(fragments)}) in {summary['out']}"
     )
+    say(join_line(synthesis.trajectory.joins))
     missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
     for sentence in dict.fromkeys(m.sentence for m in missing):
         say(f"▲ {sentence}")
     for pin, ban in summary["banned_pins"]:
         say(f"▲ The pin '{pin}' speaks what the ban '{ban}' forbids; the pin holds: take one of them out.")
+    if labelled and summary["held_out"]:
+        say(
+            f"The labels are those of the recording {_few(summary['held_out'])}: it is held out "
+            "(--include-self lets it be used)."
+        )
+    if summary["removed"]:
+        say(f"Removed what an earlier result left in {summary['out']}: {_few(summary['removed'])}.")
     if summary["speech"]["silent"]:
         say("▲ There is no sound: speech.wav is silence; --audio FILE.wav gives the sound of the labels.")
     if opened.skipped:
@@ -131,7 +150,12 @@ def synth(
         str | None, typer.Option("--utterance", help="Speak this recording's sentence.")
     ] = None,
     labels: Annotated[
-        Path | None, typer.Option("--labels", **PATH, help="Speak the timed phones of a TextGrid.")
+        Path | None,
+        typer.Option(
+            "--labels",
+            **PATH,
+            help="Speak the timed phones of a TextGrid; the recording that has them is held out.",
+        ),
     ] = None,
     audio: Annotated[
         Path | None, typer.Option("--audio", **PATH, help="Sound that goes with --labels.")
@@ -166,7 +190,10 @@ def synth(
     ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object as the last line.")] = False,
 ) -> None:
-    """Synthesise one utterance: a text, a recording of the corpus (its own units are kept out), or labels.
+    """Synthesise one utterance: a text, a recording of the corpus, or labels.
+
+    The recording itself is held out: that of --utterance, and any with the phones and times of --labels.
+    --include-self lets it be used.
 
     Example: corpus-tools synth WORK --text "place blue by f two now" --out OUT
 
@@ -185,7 +212,8 @@ def synth(
         share = 0.3 if exports else 0.95  # of the bar, for what comes before the exports
         opened = open_corpus(corpus, settings, lambda f, w: progress(0.85 * share * f, w))
         target, request = asked.target(opened, settings)
-        exclude = () if include_self or utterance is None else (utterance,)
+        own = asked.own_recordings(opened, target)
+        exclude = () if include_self else own
         progress(0.87 * share, "binding the head")
         head = prepare_head(opened, head_mesh, settings)
         progress(0.93 * share, "synthesising")
@@ -200,10 +228,12 @@ def synth(
             config=settings,
             progress=lambda f, w: progress(share + (1 - share) * f, w),
         )
-        provenance = corpus_provenance(opened)
+        provenance, before = corpus_provenance(opened), listed_files(out)
         write_synthesis(out, synthesis, head, settings, provenance, request, extra if exports else None)
+        removed = remove_stale(out, before)
     summary = _summary(synthesis, opened, settings, out)
-    _tell(summary, synthesis, opened)
+    summary |= {"held_out": list(exclude), "removed": list(removed)}
+    _tell(summary, synthesis, opened, labels is not None)
     if json_:
         emit_json(summary)
 

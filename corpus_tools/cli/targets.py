@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from corpus_tools.config import ConfigBase
-from corpus_tools.core import InputError, Utterance
+from corpus_tools.core import InputError, Interval, Utterance
 from corpus_tools.io import read_audio, read_labels
 from corpus_tools.pipeline import OpenCorpus, check_speech, speak_for, speech_language
 from corpus_tools.speech import labelled_utterance
@@ -76,3 +76,29 @@ class SpeakRequest:
             source=str(self.labels),
         )
         return target, {"labels": self.labels.name, "audio": self.audio.name if self.audio else None}
+
+    def own_recordings(self, corpus: OpenCorpus, target: Utterance) -> tuple[str, ...]:
+        """Return the recordings that say the target itself: that of --utterance, those of equal --labels."""
+        if self.utterance is not None:
+            return (self.utterance,)
+        if self.labels is None:
+            return ()
+        said = _spoken(target, corpus.phones.silence)
+        return tuple(
+            r.name for r in corpus.recordings if _alike(_spoken(r.utterance, corpus.phones.silence), said)
+        )
+
+
+SAME_S = 0.001
+"""Times that differ by no more are equal (our choice: label files are written with 1 ms or finer)."""
+
+
+def _spoken(utterance: Utterance, silence: str) -> list[Interval]:
+    return [p for p in utterance.phones if p.text != silence]
+
+
+def _alike(a: list[Interval], b: list[Interval]) -> bool:
+    """Say whether spoken phones and their times are equal; silences follow from them and the file."""
+    return [p.text for p in a] == [p.text for p in b] and all(
+        max(abs(p.start_s - q.start_s), abs(p.end_s - q.end_s)) <= SAME_S for p, q in zip(a, b, strict=True)
+    )

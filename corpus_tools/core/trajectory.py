@@ -22,7 +22,8 @@ class Join:
     spread: the cross-fade, or both decays of an inertial join. `natural_percentile` says where the blended
     peak acceleration around the join stands in the natural distribution of the corpus, 0-100; NaN when
     unknown. `flagged` is the share of marker samples of both fragments within the overlap that were filled,
-    are doubtful or were outliers, 0 to 1.
+    are doubtful or were outliers, 0 to 1. `peak_ratio` is that peak acceleration over the natural 95th
+    percentile; NaN when unknown.
     """
 
     index: int
@@ -36,6 +37,7 @@ class Join:
     gap_mm_s2: float
     natural_percentile: float = float("nan")
     flagged: float = 0.0
+    peak_ratio: float = float("nan")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,6 +24,7 @@ from corpus_tools.pipeline.speaking import (
     speech_language,
 )
 from corpus_tools.pipeline.stages import Synthesis, align_units, blend_units, select_units, synthesise
+from corpus_tools.pipeline.stale import listed_files, remove_stale
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.synthesis.lips import LipModel
 
@@ -52,6 +53,7 @@ __all__ = [
     "health_lines",
     "joined_corpora",
     "library_versions",
+    "listed_files",
     "one_thread",
     "open_corpus",
     "overrides_of",
@@ -60,6 +62,7 @@ __all__ = [
     "prepare_head",
     "read_corpus",
     "reference_columns",
+    "remove_stale",
     "select_units",
     "speak_for",
     "speech_facts",

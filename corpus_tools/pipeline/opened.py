@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,6 @@ from corpus_tools.core import (
     UnitInventory,
     Utterance,
 )
-from corpus_tools.core.errors import suggestion
 from corpus_tools.fragments import build_inventory
 from corpus_tools.fragments.posture import as_recorded, bias_rms_mm, without_bias
 from corpus_tools.io import CorpusDescription
@@ -35,7 +35,16 @@ from corpus_tools.synthesis import (
 )
 from corpus_tools.synthesis.lips import LipModel, lip_model
 
-__all__ = ["OpenCorpus", "open_corpus"]
+__all__ = ["OpenCorpus", "nearest_of", "open_corpus"]
+
+
+def nearest_of(name: str, known: Sequence[str], most: int = 3) -> str:
+    """Return a clause with the known words most like `name`, nearest first, and how many there are."""
+    near = difflib.get_close_matches(name, known, n=most, cutoff=0.0)
+    named = ", ".join(f"'{n}'" for n in near)
+    if len(known) <= len(near):
+        return f"there {'is' if len(known) == 1 else 'are'} {named}"
+    return f"the nearest of its {len(known)} are {named}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,10 +115,8 @@ class OpenCorpus:
                 f"The recording '{name}' is left out by 'exclude' in '{self.description.file}'; "
                 "take it from that list to use it."
             )
-        hint = suggestion(name, self.names)
         raise InputError(
-            f"There is no recording '{name}' in '{self.description.folder}'{hint or '.'} "
-            "'corpus-tools check' lists those that are there."
+            f"There is no recording '{name}' in '{self.description.folder}': {nearest_of(name, self.names)}."
         )
 
     def recorded(self, name: str) -> Capture:

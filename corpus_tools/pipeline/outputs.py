@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import datetime
 import json
+import math
 import platform
 import time
 from collections.abc import Callable, Mapping
@@ -37,6 +38,7 @@ JOIN_COLUMNS = (
     "gap_mm_s2",
     "natural_percentile",
     "flagged",
+    "peak_ratio",
 )
 """Columns of ``joins.csv``: the fields of :class:`~corpus_tools.core.trajectory.Join`, which says what they
 are; gap_mm, gap_mm_s and gap_mm_s2: how far two fragments differ in position, velocity and acceleration."""
@@ -69,8 +71,19 @@ def _write_mesh(path: Path, head: Head, synthesis: Synthesis) -> None:
     )
 
 
-def _number(value: float) -> str:
-    return "" if not np.isfinite(value) else f"{value:.6f}"
+_DECIMALS = {"time_s": 4, "overlap_s": 4, "natural_percentile": 1, "flagged": 3, "peak_ratio": 3}
+_DIGITS = 4
+"""Significant digits of the gaps (our choice: capture is no better than some hundredths of a millimetre)."""
+
+
+def _number(column: str, value: float) -> str:
+    """Return a number as it is written: times to 0.1 ms, gaps to four significant digits; blank: unknown."""
+    if not np.isfinite(value):
+        return ""
+    if column in _DECIMALS:
+        return f"{value:.{_DECIMALS[column]}f}"
+    digits = _DIGITS - 1 - math.floor(math.log10(abs(value))) if value else 0
+    return f"{round(value, digits):.{min(max(digits, 0), 6)}f}"
 
 
 def _write_joins(path: Path, joins: tuple[Join, ...]) -> None:
@@ -78,8 +91,8 @@ def _write_joins(path: Path, joins: tuple[Join, ...]) -> None:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(JOIN_COLUMNS)
         for join in joins:
-            values = [getattr(join, f.name) for f in fields(join)]
-            writer.writerow([_number(v) if isinstance(v, float) else v for v in values])
+            values = [(f.name, getattr(join, f.name)) for f in fields(join)]
+            writer.writerow([_number(name, v) if isinstance(v, float) else v for name, v in values])
 
 
 def _labels_of(utterance: Utterance) -> Labels:

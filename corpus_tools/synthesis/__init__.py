@@ -13,7 +13,7 @@ from corpus_tools.synthesis.joins import (
     NaturalDistribution,
     join_gaps,
     natural_distribution,
-    natural_percentiles,
+    ranked_joins,
     rms_acceleration,
 )
 from corpus_tools.synthesis.model import PhoneClasses, SelectionModel, prepare_selection
@@ -62,11 +62,11 @@ __all__ = [
     "join_inertially",
     "narrowed",
     "natural_distribution",
-    "natural_percentiles",
     "overlap_lengths",
     "peak_ratios",
     "posture_basis",
     "prepare_selection",
+    "ranked_joins",
     "render_selection",
     "resample_uniform",
     "rest_at_ends",

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from corpus_tools.core import FloatArray, Fragment, InputError, Selection, Trajectory, Utterance, step
 from corpus_tools.synthesis.alignment import WarpKind
 from corpus_tools.synthesis.inertial import join_inertially
-from corpus_tools.synthesis.joins import NaturalDistribution, join_gaps, natural_percentiles
+from corpus_tools.synthesis.joins import NaturalDistribution, join_gaps, ranked_joins
 from corpus_tools.synthesis.overlap import OverlapRule, overlap_lengths
 from corpus_tools.synthesis.pieces import MARGIN_S, AlignedPieces, Resampling, align_fragments
 from corpus_tools.synthesis.usercurve import DEFAULT_CURVE
@@ -133,9 +133,7 @@ def blend_pieces(
     result = Trajectory(aligned.times_s, values, aligned.names, joins, flags, history)
     if natural is None or not joins:
         return result
-    percentiles = natural_percentiles(result, natural)
-    ranked = tuple(replace(j, natural_percentile=p) for j, p in zip(joins, percentiles, strict=True))
-    return replace(result, joins=ranked)
+    return replace(result, joins=ranked_joins(result, natural))
 
 
 def render_selection(

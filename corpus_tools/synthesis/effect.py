@@ -63,7 +63,7 @@ def peak_ratios(trajectory: Trajectory, natural: NaturalDistribution) -> FloatAr
     """
     if not len(natural.peaks_mm_s2):
         return np.full(len(trajectory.joins), np.nan)
-    p95 = float(np.percentile(natural.peaks_mm_s2, 95))
+    p95 = natural.p95_mm_s2
     acceleration = rms_acceleration(np.asarray(trajectory.values_mm), trajectory.rate_hz)
     near = (np.abs(trajectory.times_s - join.time_s) <= 0.5 * WINDOW_S for join in trajectory.joins)
     return np.array([acceleration[window].max() / p95 for window in near])

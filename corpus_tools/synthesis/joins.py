@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,8 +16,8 @@ __all__ = [
     "NaturalDistribution",
     "join_gaps",
     "natural_distribution",
-    "natural_percentiles",
     "piece_state",
+    "ranked_joins",
     "rms_acceleration",
 ]
 
@@ -44,6 +44,11 @@ class NaturalDistribution:
     frames_p95_mm_s2: float
     columns: IntArray
     rate_hz: float
+
+    @property
+    def p95_mm_s2(self) -> float:
+        """The 95th percentile of the peaks, mm/s2; NaN when there are none."""
+        return float(np.percentile(self.peaks_mm_s2, 95)) if len(self.peaks_mm_s2) else float("nan")
 
     def percentile(self, peak_mm_s2: float) -> float:
         """Return the share of natural windows whose peak lies below, in per cent; NaN when there are none."""
@@ -105,15 +110,29 @@ def natural_distribution(
     return NaturalDistribution(frozen(np.sort(np.concatenate([*peaks, np.zeros(0)]))), p95, chosen, rate_hz)
 
 
-def natural_percentiles(trajectory: Trajectory, natural: NaturalDistribution) -> list[float]:
-    """Return where the peak acceleration around each join stands among natural windows, 0 to 100."""
+def ranked_joins(trajectory: Trajectory, natural: NaturalDistribution) -> tuple[Join, ...]:
+    """Return the joins of a trajectory with where their peak acceleration stands among natural windows.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Blended.
+    natural : NaturalDistribution
+
+    Returns
+    -------
+    tuple of Join
+        `natural_percentile`, 0 to 100, and `peak_ratio`, the peak over the natural 95th percentile.
+    """
     values = np.asarray(trajectory.values_mm)[:, natural.columns]
     acceleration = rms_acceleration(values, trajectory.rate_hz)
     found = []
     for join in trajectory.joins:
         near = np.abs(trajectory.times_s - join.time_s) <= 0.5 * WINDOW_S
-        found.append(natural.percentile(float(acceleration[near].max())))
-    return found
+        peak = float(acceleration[near].max())
+        ratio = peak / natural.p95_mm_s2
+        found.append(replace(join, natural_percentile=natural.percentile(peak), peak_ratio=ratio))
+    return tuple(found)
 
 
 def piece_state(piece: Piece, frame: int, rate_hz: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -53,15 +54,34 @@ def test_synth_writes_the_whole_folder_and_leaves_the_corpus_alone(
     assert np.isfinite(mesh["vertices_mm"]).all()
     assert mesh["faces"].shape[1] == 3
     np.testing.assert_allclose(np.diff(motion["times_s"]), 1 / 120)
+    assert re.search(r"^\d+ of \d+ joins? above the natural 95th percentile", out, re.MULTILINE)
     rows = list(csv.DictReader((tmp_path / "o/joins.csv").read_text().splitlines()))
     assert tuple((tmp_path / "o/joins.csv").read_text().splitlines()[0].split(",")) == JOIN_COLUMNS
-    assert len(rows) == summary["joins"]
+    assert len(rows) == summary["joins"] == summary["join_peaks"]["n"]
+    ratios = [float(r["peak_ratio"]) for r in rows]
+    assert summary["join_peaks"]["above_p95"] == sum(r > 1 for r in ratios)
+    assert summary["join_peaks"]["worst"]["ratio"] == max(ratios)
+    assert all(
+        (r > 1) == (float(row["natural_percentile"]) > 95) for r, row in zip(ratios, rows, strict=True)
+    )
     manifest = json.loads((tmp_path / "o/manifest.json").read_text())
     assert manifest["request"] == {"utterance": sentence, "held_out": [sentence]}
     assert all(not s["unit"].startswith(f"{sentence}:") for s in manifest["selection"])
     for name, value in manifest["files"].items():
         assert hashlib.sha256((tmp_path / "o" / name).read_bytes()).hexdigest() == value
     assert digest(simulated_corpus) == before
+
+
+def test_what_an_earlier_result_left_is_removed_and_told(tool, simulated_corpus, sentence, tmp_path):
+    base = ("synth", simulated_corpus, "--utterance", sentence, "--out", tmp_path / "o")
+    code, out, _ = tool(*base, "--export", "csv,trc")
+    assert code == 0
+    assert "Removed" not in out
+    (tmp_path / "o/notes.txt").write_text("mine")
+    code, out, err = tool(*base)
+    assert (code, err) == (0, "")
+    assert f"Removed what an earlier result left in {tmp_path / 'o'}: motion.csv, motion.trc." in out
+    assert {p.name for p in (tmp_path / "o").iterdir()} == FILES | {"notes.txt"}
 
 
 def test_equal_runs_give_equal_bytes(tool, simulated_corpus, sentence, tmp_path):
@@ -73,15 +93,20 @@ def test_equal_runs_give_equal_bytes(tool, simulated_corpus, sentence, tmp_path)
 
 def test_labels_speak_like_the_recording_they_come_from(tool, simulated_corpus, sentence, tmp_path):
     files = find_recordings(read_description(simulated_corpus))[0]
-    tool("synth", simulated_corpus, "--utterance", sentence, "--include-self", "--out", tmp_path / "a")
-    code, _, err = tool(
+    tool("synth", simulated_corpus, "--utterance", sentence, "--out", tmp_path / "a")
+    code, out, err = tool(
         "synth", simulated_corpus, "--labels", files.labels, "--audio", files.audio, "--out", tmp_path / "b"
     )
     assert (code, err) == (0, "")
+    assert f"The labels are those of the recording {sentence}: it is held out (--include-self" in out
+    assert json.loads((tmp_path / "b/manifest.json").read_text())["request"]["held_out"] == [sentence]
     assert (tmp_path / "a/motion.npz").read_bytes() == (tmp_path / "b/motion.npz").read_bytes()
     assert (tmp_path / "a/speech.wav").read_bytes() == (tmp_path / "b/speech.wav").read_bytes()
-    code, _, _ = tool("synth", simulated_corpus, "--labels", files.labels, "--out", tmp_path / "c")
+    own = ("--labels", files.labels, "--include-self")
+    code, out, _ = tool("synth", simulated_corpus, *own, "--out", tmp_path / "c", "--json")
     assert code == 0
+    assert "held out (" not in out
+    assert all(f.startswith(f"{sentence}:") for f in last_json(out)["fragments"])
     phones = read_labels(tmp_path / "c/labels.TextGrid").tier("phones")
     assert [p.text for p in phones] == [
         p.text for p in read_labels(tmp_path / "a/labels.TextGrid").tier("phones")

@@ -6,6 +6,8 @@ import json
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from corpus_tools.config import Config
 from corpus_tools.core import OutputError
@@ -87,8 +89,24 @@ def test_joins_are_rows_with_the_columns_that_scripts_read(written, made):
     assert len(rows) == len(joins) == made[1].selection.n_joins
     for row, join in zip(rows, joins, strict=True):
         assert (row["left_source"], row["right_source"]) == (join.left_source, join.right_source)
-        assert float(row["time_s"]) == pytest.approx(join.time_s, abs=1e-6)
-        assert float(row["gap_mm"]) == pytest.approx(join.gap_mm, abs=1e-6)
+        assert float(row["time_s"]) == pytest.approx(join.time_s, abs=5.1e-5)
+        assert float(row["natural_percentile"]) == pytest.approx(join.natural_percentile, abs=0.051)
+        for name in ("gap_mm", "gap_mm_s", "gap_mm_s2"):
+            assert float(row[name]) == pytest.approx(getattr(join, name), rel=5.1e-4)
+            assert len(row[name].replace(".", "").lstrip("0")) <= max(4, len(row[name].split(".")[0]))
+
+
+@given(st.floats(1e-3, 1e7))
+def test_a_gap_is_written_with_four_significant_digits(value):
+    text = outputs._number("gap_mm", value)
+    assert "e" not in text
+    assert float(text) == pytest.approx(value, rel=5.1e-4)
+    assert float(text) == float(f"{float(text):.4g}")
+
+
+def test_an_unknown_number_is_blank_and_zero_is_zero():
+    assert outputs._number("natural_percentile", float("nan")) == ""
+    assert outputs._number("gap_mm", 0.0) == "0"
 
 
 def test_the_manifest_accounts_for_everything(written, made, provenance):

@@ -10,7 +10,7 @@ from corpus_tools.synthesis import (
     align_fragments,
     blend_pieces,
     natural_distribution,
-    natural_percentiles,
+    ranked_joins,
     rms_acceleration,
 )
 from tests.strategies.fragments import NAMES, make_fragment, make_selection, make_target, seeds, spliced
@@ -126,14 +126,14 @@ def test_a_join_is_placed_by_its_peak_among_natural_ones():
     peak = rms_acceleration(np.asarray(rough.values_mm), RATE_HZ).max()
     ladder = np.linspace(0.01, 2.0, 200) * peak
     natural = NaturalDistribution(ladder, float(ladder[189]), np.arange(len(NAMES)), RATE_HZ)
-    assert natural_percentiles(smooth, natural) == [0.0]
-    assert natural_percentiles(rough, natural) == [pytest.approx(50, abs=1)]
+    assert [j.natural_percentile for j in ranked_joins(smooth, natural)] == [0.0]
+    assert [j.natural_percentile for j in ranked_joins(rough, natural)] == [pytest.approx(50, abs=1)]
     placed = blend_pieces(
         align_fragments(*joined(still, parabola(6.0, 0, 0, 1.0)), names=NAMES), natural=natural
     )
     assert placed.joins[0].natural_percentile == pytest.approx(50, abs=1)
     unmoved = dataclasses.replace(natural, columns=np.array([1]))
-    assert natural_percentiles(rough, unmoved) == [pytest.approx(50, abs=1)]
+    assert [j.natural_percentile for j in ranked_joins(rough, unmoved)] == [pytest.approx(50, abs=1)]
 
 
 def test_the_peak_of_a_blended_step_is_the_curvature_of_g():
