@@ -259,9 +259,23 @@ def test_a_typed_sentence_is_spoken_and_one_without_words_is_refused_in_its_plac
     browser_page.get_by_role("button", name="Text", exact=True).click()
     browser_page.get_by_text("Type a sentence above").wait_for()
     field = browser_page.get_by_placeholder("Type a sentence")
-    field.fill("the time is half past nine")
+    field.fill("  the time is half past nine ")
     field.press("Enter")
-    until(browser_page, lambda: session.result.request.text == "the time is half past nine")
+    playing = transport(browser_page).get_by_role("button", name="Pause (Space)")
+    playing.wait_for()  # what was typed is heard and seen
+    assert session.result.request.text == "the time is half past nine"
+    browser_page.keyboard.press("Space")  # the field has let the keys go
+    playing.wait_for(state="detached")
+    states = len(session.history.entries)
+    assert field.input_value() == "the time is half past nine"
+    field.press("End")
+    field.press_sequentially("  ")
+    field.press("Enter")  # the same words: they are played again, and nothing else happens
+    playing.wait_for()
+    assert (len(session.history.entries), session.text) == (states, "the time is half past nine")
+    field.press("Escape")
+    browser_page.keyboard.press("Space")
+    playing.wait_for(state="detached")
     labels = session.result.utterance.labels
     until(
         browser_page,
@@ -291,6 +305,14 @@ def test_a_dragged_handle_makes_an_own_curve_and_keys_move_it(browser_page, serv
     until(browser_page, lambda: session.weighting == "user")
     settled(browser_page, session)
     dragged = session.curve_weights
+    off = """c => {
+      const curve = c.vsw.values;
+      return Math.max(...c.vsw.handles.points.map(([u, g]) => {
+        const i = Math.min(curve.length - 2, Math.floor(u * (curve.length - 1)));
+        return Math.abs(g - curve[i] - (u * (curve.length - 1) - i) * (curve[i + 1] - curve[i]));
+      }));
+    }"""
+    until(browser_page, lambda: canvas.evaluate(off) < 1e-4)  # the handles lie on the curve again
     canvas.press("ArrowUp")
     until(browser_page, lambda: session.curve_weights != dragged)
     browser_page.keyboard.press("v")

@@ -90,7 +90,13 @@ class BlendPage:
         self._picking = False
         clock = f"page-{next(_clocks)}"
         self.controls = Controls(self.session)
-        self.bar = AppBar(self.session, self.controls, on_corpus=lambda: self.show("corpus"))
+        self.bar = AppBar(
+            self.session,
+            self.controls,
+            on_corpus=lambda: self.show("corpus"),
+            on_speak=lambda: self._gate.asked(self._speak_text),
+        )
+        self._to_play: tuple[str, str] | None = None
         self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
         self.board = BlendBoard(self.session, self.controls, clock, self.desk.cancel)
         self.desk.after_head = AfterPainted(self.board.face.mesh_view.line, self._gate)
@@ -156,6 +162,14 @@ class BlendPage:
         if not blend:
             self.desk.check()
 
+    def _speak_text(self) -> None:
+        """Play the typed text: now when it is there, else as soon as it is."""
+        result, request = self.session.result, self.session.request()
+        if result is not None and request is not None and result.request.same_target(request):
+            self.transport.play()
+        else:
+            self._to_play = self.session.target
+
     def _speak(self, recording: str) -> None:
         self.session.param.update(target_kind="recording", sentence=recording)
         self.show("blend")
@@ -206,7 +220,9 @@ class BlendPage:
         if result is None:
             return
         if old is None or not old.request.same_target(result.request):
-            self.transport.load(result.utterance, result.request.corpus.phones)
+            wanted, self._to_play = self._to_play, None
+            plays = wanted == self.session.target
+            self.transport.load(result.utterance, result.request.corpus.phones, plays)
 
     def _hear(self, option: int | None) -> None:
         sound = heard(self.session, option)

@@ -14,13 +14,13 @@ function floats(buffer) {
   return new Float32Array(buffer instanceof ArrayBuffer ? buffer : buffer.slice().buffer);
 }
 
-/** Drag of the handles and their keys; `tell(points)` is called with every move. */
+/** Drag of the handles and their keys; `tell(points)` is called with every move, `dropped()` after a drag. */
 class Handles {
-  constructor(canvas, box, tell) {
-    Object.assign(this, { canvas, box, tell, points: [], chosen: -1, drag: false });
+  constructor(canvas, box, tell, dropped) {
+    Object.assign(this, { canvas, box, tell, dropped, points: [], chosen: -1, drag: false });
     canvas.onpointerdown = (event) => this.down(event);
     canvas.onpointermove = (event) => this.move(event);
-    canvas.onpointerup = canvas.onpointercancel = () => (this.drag = false);
+    canvas.onpointerup = canvas.onpointercancel = () => this.drop();
   }
 
   near(event) {
@@ -43,6 +43,11 @@ class Handles {
     if (!this.drag) return;
     const [x0, y0, x1, y1] = this.box();
     this.put((event.offsetX - x0) / (x1 - x0), (y1 - event.offsetY) / (y1 - y0));
+  }
+
+  drop() {
+    this.drag = false;
+    this.dropped();
   }
 
   put(u, g) {
@@ -80,10 +85,12 @@ export function renderCurve({ model, el }) {
   let asked = 0;
   const half = () => Math.round(0.54 * root.clientWidth);
   const box = () => [34, 12, half() - 12, root.clientHeight - 36];
-  const handles = new Handles(canvas, box, (points) => {
+  const tell = (points) => {
     model.send_msg({ type: "points", points });
     ask();
-  });
+  };
+
+  const handles = new Handles(canvas, box, tell, () => ask());
 
   const draw = () => {
     asked = 0;
@@ -110,7 +117,7 @@ export function renderCurve({ model, el }) {
     ctx.textAlign = "left";
     ctx.fillStyle = p.acc;
     ctx.fillText(fitText(ctx, model.hint, w - half() - 16), half() + 8, h - 6);
-    canvas.vsw = { draws: (canvas.vsw?.draws ?? 0) + 1, handles, box };
+    canvas.vsw = { draws: (canvas.vsw?.draws ?? 0) + 1, handles, box, values };
   };
   const ask = () => (asked ||= requestAnimationFrame(draw));
   const describe = () => {

@@ -5,7 +5,7 @@
 
 /** Where the handles stand along u. */
 export const HANDLES = [0.2, 0.36, 0.5, 0.64, 0.8];
-const EDGE = 0.01;
+const EDGE = 0.05; // between neighbours along u: closer handles cover each other and bend the curve sharply
 
 /** The value of g at u, from even samples. */
 export function sampleAt(values, u) {

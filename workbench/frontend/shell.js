@@ -49,6 +49,13 @@ function typing(event) {
   });
 }
 
+/** Enter and Esc end the typing of a text: the keys of the page act again. A list that is open keeps them. */
+function leaveField(event, name) {
+  const field = event.composedPath()[0];
+  const text = field?.tagName === "INPUT" && field.type === "text" && field.role !== "combobox";
+  if (text && (name === "Enter" || name === "Escape")) setTimeout(() => field.blur(), 0);
+}
+
 function keyName(event) {
   const key = event.key === " " ? "Space" : event.key;
   const held = event.ctrlKey || event.metaKey;
@@ -204,6 +211,7 @@ export function renderShell({ model, el, view }) {
   const onKey = (event) => {
     if (event.defaultPrevented) return;
     const name = keyName(event);
+    leaveField(event, name);
     const found = findBinding(model.bindings, name);
     if (!found || found[0].scope === "transport") return;
     if (typing(event) && name !== "Escape") return;

@@ -155,7 +155,11 @@ export function renderTransport({ model, el }) {
   paint();
   load();
   const off = clk.add(show);
-  model.on("revision", () => setTimeout(load, 0)); // after every value of the same update has arrived
+  const begin = () => {
+    load();
+    if (model.plays && sound.duration > 0) play(0, sound.duration);
+  };
+  model.on("revision", () => setTimeout(begin, 0)); // after every value of the same update has arrived
   model.on("theme", paint);
   model.on("msg:custom", (message) => sound.duration > 0 && obey[message.op]?.(message));
   root.vsw = { clock: clk, sound, overview };

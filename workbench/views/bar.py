@@ -35,12 +35,19 @@ class AppBar(pn.viewable.Viewer):
     controls : Controls
     on_corpus : callable
         Shows the page that opens a corpus.
+    on_speak : callable, optional
+        Called when Enter was pressed in the text, once the session has the text.
     """
 
     def __init__(
-        self, session: Session, controls: Controls, on_corpus: Callable[[], None], **params: Any
+        self,
+        session: Session,
+        controls: Controls,
+        on_corpus: Callable[[], None],
+        on_speak: Callable[[], None] = lambda: None,
+        **params: Any,
     ) -> None:
-        self._session = session
+        self._session, self._on_speak = session, on_speak
         super().__init__(**params)
         self.corpus = button(controls, "Open a corpus", margin=(5, 4, 5, 8))
         self.corpus.on_click(lambda _: on_corpus())
@@ -76,7 +83,9 @@ class AppBar(pn.viewable.Viewer):
             margin=(3, 2),
             visible=False,
         )
-        controls.tie(self.text, "text")
+        self.text.param.watch(lambda event: self._typed(event.new), "value")
+        self.text.param.watch(lambda _: self._entered(), "enter_pressed")
+        session.param.watch(lambda event: self.text.param.update(value=event.new), "text")
         session.param.watch(self._kind, "target_kind")
         self.theme = button(controls, "◐", description="Light or dark: T", margin=(5, 8), width=34)
         self.theme.on_click(lambda _: self.toggle_theme())
@@ -92,6 +101,17 @@ class AppBar(pn.viewable.Viewer):
     def toggle_theme(self) -> None:
         """Light to dark and back."""
         self._session.theme = "dark" if self._session.theme == "light" else "light"
+
+    def _typed(self, text: str) -> None:
+        """Take a text without the blanks around it, which say nothing."""
+        if text != text.strip():
+            self.text.value = text.strip()
+        elif text != self._session.text:
+            self._session.text = text
+
+    def _entered(self) -> None:
+        self._typed((self.text.value_input or "").strip())  # Enter is told before the value
+        self._on_speak()
 
     def _kind(self, *events: Any) -> None:
         have, typed = self._session.corpus is not None, self._session.target_kind == "text"

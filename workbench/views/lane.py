@@ -14,11 +14,25 @@ from workbench.state import THEMES, Result, aperture_curves, joins_data, score
 from workbench.views.esm import esm
 from workbench.views.theme import palettes, style_sheet
 
-__all__ = ["NO_EFFECT", "Lane", "Points", "WeightingPlot"]
+__all__ = ["NO_EFFECT", "Lane", "Points", "WeightingPlot", "on_curve"]
 
 _NO_SCORE = {"duration": 1.0, "phones": [], "fragments": []}
 NO_EFFECT: dict[str, Any] = {"overlaps": [], "curves": [], "now": None, "other": None}
 Points = list[tuple[float, float]]
+
+
+def on_curve(points: Points, values: npt.ArrayLike) -> Points:
+    """Return the handles moved up or down onto a curve.
+
+    Parameters
+    ----------
+    points : list of (u, g)
+    values : (n,) array_like
+        The curve at even u from 0 to 1.
+    """
+    g = np.asarray(values, float)
+    even = np.linspace(0.0, 1.0, len(g))
+    return [(u, float(np.interp(u, even, g))) for u, _ in points]
 
 
 class Lane(pn.custom.JSComponent):

@@ -45,6 +45,7 @@ class Transport(pn.custom.JSComponent):
     duration_s = param.Number(default=0.0, bounds=(0, None), doc="Length of the motion; sound may be longer.")
     phones = param.List(default=[], doc="[start_s, end_s, phone, display class] in order.")
     revision = param.Integer(default=0, doc="Counts the utterances loaded.")
+    plays = param.Boolean(default=False, doc="Play an utterance as soon as it is loaded.")
     time = param.Number(default=0.0, doc="Where the clock came to rest, s.")
     session = param.String(default="default")
     theme = param.Selector(default="light", objects=list(THEMES))
@@ -61,17 +62,24 @@ class Transport(pn.custom.JSComponent):
         sizes = {} if "height" in params else {"height": 48}
         super().__init__(**{"sizing_mode": "stretch_width", "palettes": palettes(), **sizes, **params})
 
-    def load(self, utterance: Utterance, phones: PhoneSet) -> None:
+    def load(self, utterance: Utterance, phones: PhoneSet, plays: bool = False) -> None:
         """Take the sound, the length and the phones of an utterance; without sound it plays silence."""
-        self.load_sound(utterance.audio, utterance.duration_s, phone_rows(utterance, phones))
+        self.load_sound(utterance.audio, utterance.duration_s, phone_rows(utterance, phones), plays)
 
-    def load_sound(self, audio: Audio | None, duration_s: float, rows: list[list[Any]] | None = None) -> None:
-        """Take a sound, the length of what moves with it (s), and rows as of `phones`."""
+    def load_sound(
+        self,
+        audio: Audio | None,
+        duration_s: float,
+        rows: list[list[Any]] | None = None,
+        plays: bool = False,
+    ) -> None:
+        """Take a sound, the length of what moves with it (s), and rows as of `phones`; play it when asked."""
         self.param.update(
             pcm=b"" if audio is None else pcm16(audio.samples),
             rate_hz=16000 if audio is None else int(audio.rate_hz),
             duration_s=float(duration_s),
             phones=rows or [],
+            plays=plays,
             revision=self.revision + 1,
         )
 

@@ -21,7 +21,7 @@ from workbench.views.board_texts import beside_of, head_text, lower_text, missin
 from workbench.views.controls import Controls, preset_buttons, slider
 from workbench.views.face import Face
 from workbench.views.head_actors import OVERLAYS
-from workbench.views.lane import NO_EFFECT, Lane, Points, WeightingPlot
+from workbench.views.lane import NO_EFFECT, Lane, Points, WeightingPlot, on_curve
 from workbench.views.settings_panel import PRESETS
 from workbench.views.shell import Board
 from workbench.views.trajectories import Trajectories
@@ -196,10 +196,14 @@ class BlendBoard(pn.viewable.Viewer):
         self.trajectories.shown = curves
 
     def _points(self, points: Points) -> None:
-        """Let the person's own curve go through the handles."""
+        """Lay the person's own curve through the handles, and the handles on the curve.
+
+        A smooth curve that falls cannot go through all handles anywhere: it comes as near as it can.
+        """
         weights = curve_through(points)
-        self._handles = (weights, points)
+        self._handles = (weights, on_curve(points, weighting_samples("user", 0.0, weights)))
         self._session.param.update(curve_weights=weights, weighting="user", shape=0.0)
+        self._curve()
 
     def _curve(self, *events: Any) -> None:
         session = self._session
