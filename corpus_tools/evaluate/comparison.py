@@ -37,6 +37,9 @@ class Comparison:
     phones : PhoneSet
     words : (n_frames,) bool, optional
         Captured frames inside words that the training recordings hold with the same neighbours.
+    instants_s : (n,) s, optional
+        Where accelerations are looked at as around a join; the joins of the prediction when None. A recording
+        has no joins: it is looked at where the methods have theirs.
     """
 
     def __init__(
@@ -46,11 +49,14 @@ class Comparison:
         natural: Natural,
         phones: PhoneSet,
         words: BoolArray | None = None,
+        instants_s: FloatArray | None = None,
     ) -> None:
         self.recording = recording
         self.prediction = prediction
         self.natural = natural
         self.phones = phones
+        joins = np.array([join.time_s for join in prediction.joins])
+        self.instants_s = joins if instants_s is None else instants_s
         capture = recording.capture
         self.span_s = speech_span_s(recording.utterance, phones.silence, SPEECH_MARGIN_S)
         self.frames = np.flatnonzero(

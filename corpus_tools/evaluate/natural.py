@@ -97,6 +97,9 @@ class Natural:
         Of :data:`ARTICULATORS`.
     acceleration_p95_mm_s2 : float
         95th percentile over frames of the rms acceleration of lips and chin.
+    stretch_p95_mm_s2 : float
+        95th percentile over stretches of :data:`~corpus_tools.synthesis.JOIN_WINDOW_S` of the largest such
+        acceleration in each: a peak passes that of frames much more often than a frame does.
     closed_mm : float
         Lip aperture below which lips are closed; NaN without bilabials.
     basis : PostureBasis
@@ -115,6 +118,7 @@ class Natural:
     face_acceleration_p95_mm_s2: float
     articulator_sd_mm: FloatArray
     acceleration_p95_mm_s2: float
+    stretch_p95_mm_s2: float
     closed_mm: float
     basis: PostureBasis
     feature_sd: FloatArray
@@ -143,6 +147,10 @@ def _speed_p95(captures: Sequence[Capture], speaking: Sequence[BoolArray]) -> fl
     return float(np.percentile(np.concatenate(speeds), 95))
 
 
+def _percentile95(values: FloatArray) -> float:
+    return float(np.percentile(values, 95)) if len(values) else float("nan")
+
+
 def natural_of(training: TrainingSet) -> Natural:
     """Measure natural speech on recordings in their own posture."""
     captures = [r.capture for r in training.recordings]
@@ -169,6 +177,7 @@ def natural_of(training: TrainingSet) -> Natural:
         face_acceleration_p95_mm_s2=face.frames_p95_mm_s2,
         articulator_sd_mm=articulators(frames, training.markers).std(axis=0),
         acceleration_p95_mm_s2=lips.frames_p95_mm_s2,
+        stretch_p95_mm_s2=_percentile95(lips.peaks_mm_s2),
         closed_mm=closure_threshold_mm(captures, utterances, training.phones),
         basis=basis,
         feature_sd=sd,

@@ -22,7 +22,7 @@ from corpus_tools.speech import PhoneSet
 __all__ = ["NATURAL", "REPETITION", "Evaluation", "Source", "evaluate"]
 
 NATURAL = "natural"
-"""Row of the recordings themselves: what a perfect prediction would score."""
+"""Row of the recordings themselves: what a perfect prediction would score; looked at where methods join."""
 
 REPETITION = "repetition"
 """Row of the speaker's own repetition of the same words between the same neighbours."""
@@ -86,6 +86,7 @@ class _Collected:
         self.failures: list[tuple[str, str, str]] = []
         self.fit_s: dict[str, list[float]] = defaultdict(list)
         self.predict_s: dict[str, list[float]] = defaultdict(list)
+        self.joins_s: dict[str, list[float]] = defaultdict(list)
 
     def take(self, method: str, comparison: Comparison, words_only: bool = False) -> None:
         for metric in METRICS.values():
@@ -94,7 +95,7 @@ class _Collected:
 
     def whole(self) -> Evaluation:
         every = {}
-        for key, by_name in self.shares.items():
+        for key, by_name in sorted(self.shares.items(), key=lambda item: item[0][0] != NATURAL):
             width = max(len(share) for share in by_name.values())
             nothing = np.full(width, np.nan)
             every[key] = np.stack([by_name.get(name, nothing) for name in self.sentences])
@@ -189,8 +190,6 @@ def _run_fold(
         spoken[name], again = words.repeated(recording, rng)
         collected.sentences.append(name)
         collected.groups.append(fold.group)
-        perfect = _as_prediction(recording, training)
-        collected.take(NATURAL, Comparison(recording, perfect, natural, phones, spoken[name]))
         repeated = Comparison(recording, again, natural, phones, spoken[name])
         collected.take(REPETITION, repeated, words_only=True)
     for index, variant in enumerate(variants):
@@ -200,6 +199,9 @@ def _run_fold(
         collected.fit_s[variant.label].append(time.perf_counter() - start)
         for name in fold.test:
             _predicted(collected, variant.label, predict, recordings[name], natural, phones, spoken[name])
+    for name in fold.test:
+        perfect, joins_s = _as_prediction(recordings[name], training), np.array(collected.joins_s[name])
+        collected.take(NATURAL, Comparison(recordings[name], perfect, natural, phones, spoken[name], joins_s))
 
 
 def _predicted(
@@ -218,4 +220,5 @@ def _predicted(
         collected.failures.append((label, recording.name, str(error)))
         return
     collected.predict_s[label].append(time.perf_counter() - start)
+    collected.joins_s[recording.name] += [join.time_s for join in motion.joins]
     collected.take(label, Comparison(recording, motion, natural, phones, words))

@@ -17,6 +17,7 @@ from corpus_tools.evaluate.natural import Moments
 from corpus_tools.methods import TrainingSet
 from corpus_tools.pipeline.reading import face_only
 from corpus_tools.speech import lip_aperture_mm
+from corpus_tools.synthesis import natural_distribution
 
 RATE = 120.0
 RECORDINGS = [replace(r, capture=face_only(r.capture)) for r in talk(8)]
@@ -237,12 +238,24 @@ def test_joins_are_measured_by_natural_speech():
     peak = 0.2 * np.sqrt(3) * RATE**2 / NATURAL.acceleration_p95_mm_s2
     assert value("join_peak", comparison) == pytest.approx(peak)
     assert value("join_unnatural", comparison) == 1
+    for factor, unnatural in ((0.99, 0), (1.01, 1)):  # the yardstick is that of stretches
+        step = factor * NATURAL.stretch_p95_mm_s2 / (np.sqrt(3) * RATE**2)
+        near = compared(lambda motion, step=step: jump / 0.2 * step, joins=(join,))
+        assert value("join_unnatural", near) == unnatural
     still = compared(scaled(0.0), joins=(join,))
     assert value("join_unnatural", still) == 0
     assert np.isnan(value("join_peak", compared()))
     # sentences are pooled join by join
     assert value("joins", comparison, compared()) == 0.5
     assert value("join_gap_position", comparison, compared()) == pytest.approx(2)
+
+
+def test_natural_stretches_peak_higher_than_natural_frames():
+    assert NATURAL.stretch_p95_mm_s2 > NATURAL.acceleration_p95_mm_s2
+    found = natural_distribution(
+        [r.capture for r in RECORDINGS[1:]], RATE, LIPS_CHIN, [(0.0, 99.0)] * len(RECORDINGS[1:])
+    )
+    assert NATURAL.stretch_p95_mm_s2 == pytest.approx(np.percentile(found.peaks_mm_s2, 95), rel=0.2)
 
 
 def test_word_metrics_look_at_words_only():

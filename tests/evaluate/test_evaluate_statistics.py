@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,13 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies.talking import PHONES, motion_of, speak, talk
 
-from corpus_tools.core import InputError, Recording
+from corpus_tools.core import InputError, Join, Recording
 from corpus_tools.evaluate import METRICS, Fold, evaluate, k_folds, leave_one_out, one_split, tabulate
 from corpus_tools.evaluate.bootstrap import drawn_values, estimate, jackknife_sd, ratio, resamples
 from corpus_tools.evaluate.metrics import Metric
 from corpus_tools.evaluate.metrics.registry import mean_of_sentences, quotient
 from corpus_tools.evaluate.repetition import RepeatedWords
-from corpus_tools.methods import parse_variant
+from corpus_tools.evaluate.runner import _as_prediction
+from corpus_tools.methods import METHODS, parse_variant
 from corpus_tools.pipeline.reading import face_only
 
 NAMES = [f"n{i:02d}" for i in range(23)]
@@ -123,6 +125,40 @@ def test_every_interval_of_a_run_holds_its_estimate():
     assert [key for key, found in table.ratios.items() if not _holds(found)] == []
     found = table.values["viterbi", "frechet"]
     assert found.low < found.value < found.high
+
+
+class Untouched:
+    """A method that speaks the recordings themselves and says that it joined at some phones."""
+
+    method = METHODS["mean"]
+    changes: ClassVar = {}
+
+    def __init__(self, recordings, label, every):
+        self.known, self.label, self.every = {r.name: r for r in recordings}, label, every
+
+    def fit(self, training):
+        def predict(utterance):
+            phones = utterance.phones.intervals[1 : -1 : self.every]
+            joins = tuple(Join(0, p.centre_s, p.text, "a:0-1", "b:0-1", 0.1, 0, 0, 0) for p in phones)
+            return replace(_as_prediction(self.known[utterance.name], training), joins=joins)
+
+        return predict
+
+
+def test_natural_speech_is_looked_at_where_methods_join():
+    recordings = [replace(r, capture=face_only(r.capture)) for r in talk(8)]
+    folds = k_folds([r.name for r in recordings], 2)
+    for every in (1, 3):
+        methods = [Untouched(recordings, "untouched", every), parse_variant("mean")]
+        values = tabulate(evaluate(Cleaned(recordings), folds, methods)).values
+        for metric in ("join_peak", "join_unnatural"):
+            assert values["natural", metric] == values["untouched", metric]
+        assert 0 < values["natural", "join_peak"].value < 3
+        assert values["natural", "joins"].value == 0
+        assert ("natural", "join_gap_position") not in values
+        assert ("mean", "join_peak") not in values
+    silent = tabulate(evaluate(Cleaned(recordings), folds, [parse_variant("mean")])).values
+    assert ("natural", "join_peak") not in silent
 
 
 @given(st.integers(0, 1000))

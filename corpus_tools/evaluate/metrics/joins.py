@@ -1,4 +1,11 @@
-"""How well fragments fit where they are joined, against what natural speech does."""
+"""How well fragments fit where they are joined, against what natural speech does.
+
+Two yardsticks: `join_peak` is a ratio to the 95th percentile of single *frames* of natural speech, as the
+other accelerations are; `join_unnatural` counts peaks beyond the 95th percentile of the peaks of natural
+*stretches* as long as a join, as ``natural_percentile`` of ``joins.csv`` and the page do. The row of natural
+speech is the recordings themselves in the very windows in which the methods have their joins: same times,
+same phones.
+"""
 
 from __future__ import annotations
 
@@ -15,15 +22,15 @@ _MEETING = "all face markers, where fragments meet"
 
 
 def join_peaks(comparison: Comparison) -> FloatArray:
-    """Return the peak rms acceleration of lips and chin around each join over the natural 95th percentile."""
+    """Return the peak rms acceleration of lips and chin around each join (or other instant), mm/s2."""
     times = np.asarray(comparison.prediction.times_s)
     values = np.asarray(comparison.prediction.values_mm)[:, comparison.natural.columns]
     acceleration = rms_acceleration(values, comparison.natural.rate_hz)
     peaks = [
-        acceleration[np.abs(times - join.time_s) <= 0.5 * JOIN_WINDOW_S].max()
-        for join in comparison.prediction.joins
+        acceleration[np.abs(times - instant_s) <= 0.5 * JOIN_WINDOW_S].max()
+        for instant_s in comparison.instants_s
     ]
-    return np.array(peaks) / comparison.natural.acceleration_p95_mm_s2
+    return np.array(peaks)
 
 
 def _summed(values: FloatArray | BoolArray | list[float]) -> FloatArray:
@@ -39,13 +46,13 @@ def _count(comparison: Comparison) -> FloatArray:
 @metric("join_peak", better="low", mask="lips and chin, 0.12 s around each join", combine=quotient)
 def _peak(comparison: Comparison) -> FloatArray:
     """Mean over joins of the peak acceleration around them, over the natural 95th percentile of frames."""
-    return _summed(join_peaks(comparison))
+    return _summed(join_peaks(comparison) / comparison.natural.acceleration_p95_mm_s2)
 
 
 @metric("join_unnatural", better="low", mask="lips and chin, 0.12 s around each join", combine=quotient)
 def _unnatural(comparison: Comparison) -> FloatArray:
-    """Share of joins around which the acceleration passes the natural 95th percentile of frames."""
-    return _summed(join_peaks(comparison) > 1.0)
+    """Share of joins with a higher peak acceleration than 95 % of natural stretches of 0.12 s: about .05."""
+    return _summed(join_peaks(comparison) > comparison.natural.stretch_p95_mm_s2)
 
 
 @metric("join_gap_position", better="low", mask=_MEETING, combine=quotient)
@@ -56,7 +63,7 @@ def _gap(comparison: Comparison) -> FloatArray:
 
 @metric("join_gap_velocity", better="low", mask=_MEETING, combine=quotient)
 def _velocity_gap(comparison: Comparison) -> FloatArray:
-    """Mean gap in velocity before blending, over the natural 95th percentile of the speed."""
+    """Mean gap in velocity before blending, over the natural 95th percentile of the speed in frames."""
     return _summed([j.gap_mm_s / comparison.natural.face_speed_p95_mm_s for j in comparison.prediction.joins])
 
 
@@ -64,6 +71,6 @@ def _velocity_gap(comparison: Comparison) -> FloatArray:
     "join_gap_acceleration", better="low", mask="all face markers, where fragments meet", combine=quotient
 )
 def _acceleration_gap(comparison: Comparison) -> FloatArray:
-    """Mean gap in acceleration before blending, over the natural 95th percentile of the acceleration."""
+    """Mean gap in acceleration before blending, over the natural 95th percentile of it in frames."""
     scale = comparison.natural.face_acceleration_p95_mm_s2
     return _summed([j.gap_mm_s2 / scale for j in comparison.prediction.joins])

@@ -52,7 +52,7 @@ def _modulation(comparison: Comparison, low_hz: float, high_hz: float) -> FloatA
 
 @metric("modulation_4_8hz", better="one", mask=_TRACKS, combine=quotient)
 def _syllables(comparison: Comparison) -> FloatArray:
-    """Power of aperture, width and jaw at 4-8 Hz, made over recorded (Hann window, pooled)."""
+    """Power of aperture, width and jaw at 4-8 Hz, made over recorded (natural: 1; Hann window, pooled)."""
     return _modulation(comparison, 4.0, 8.0)
 
 
@@ -63,7 +63,7 @@ def _syllables(comparison: Comparison) -> FloatArray:
     combine=quotient,
 )
 def _fast(comparison: Comparison) -> FloatArray:
-    """Power of aperture, width and jaw at 8-12 Hz, made over recorded (Hann window, pooled)."""
+    """Power of aperture, width and jaw at 8-12 Hz, made over recorded (natural: 1; Hann window, pooled)."""
     return _modulation(comparison, 8.0, 12.0)
 
 
@@ -74,13 +74,13 @@ def _acceleration(comparison: Comparison) -> FloatArray:
 
 @metric("acceleration_p95", better="one", mask=_FINE)
 def _usual_acceleration(comparison: Comparison) -> FloatArray:
-    """95th percentile of the rms acceleration in a sentence, over that of natural speech."""
+    """95th percentile of the rms acceleration in a sentence, over the natural one of frames."""
     return np.array([np.percentile(_acceleration(comparison), 95)])
 
 
 @metric("acceleration_max", better="low", mask=_FINE)
 def _largest_acceleration(comparison: Comparison) -> FloatArray:
-    """Largest rms acceleration in a sentence, over the natural 95th percentile."""
+    """Largest rms acceleration in a sentence, over the natural 95th percentile of frames."""
     return np.array([_acceleration(comparison).max()])
 
 
