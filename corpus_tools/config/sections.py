@@ -198,10 +198,10 @@ class RestSettings(Section):
     """The way from the neutral pose into speech and back; our own step, beyond paper A."""
 
     ease_s: float = Field(
-        0.3,
+        0.15,
         ge=0,
         le=2,
-        description="Longest way from and to the neutral pose, inside the silence, s; 0: none.",
+        description="Way from rest to the first phone and from the last one back, in silence, s; 0: none.",
     )
 
 

@@ -26,13 +26,19 @@ def rest_at_ends(
     *,
     neutral_mm: FloatArray,
     silence: str,
-    ease_s: float = 0.3,
+    ease_s: float = 0.15,
 ) -> Trajectory:
     """Let the motion leave the neutral pose in the first silence and come back to it in the last.
 
     The face between neutral and the blended motion is ``neutral + w (motion - neutral)``, with w a quintic
-    step: 0 at the first and last frame, 1 after `ease_s` or where speech begins, whichever is earlier. The
-    motion stays C1 (C2 where it was), its speed at both ends is 0, and no frame of speech changes.
+    step: 0 until `ease_s` before the first phone and from `ease_s` after the last, 1 where there is speech; a
+    shorter silence is used whole. The motion stays C1 (C2 where it was), its speed at both ends is 0, and no
+    frame of speech changes.
+
+    What a speaker does in silence earlier than that, such as opening the mouth to breathe, belongs to the
+    recording that a fragment is from; lips and jaw prepare for the phone itself within 0.15 s (our choice:
+    with 0.2 s half of a breath right before speech stays on the lips, with 0.1 s some fragments set out as
+    fast as speech).
 
     It holds for every utterance, a recorded one too: equal phones give equal motion whether they come from
     a text, a label file or a recording, sentences can be put one after another, and a comparison with a
@@ -48,17 +54,17 @@ def rest_at_ends(
         The rest pose of the corpus.
     silence : str
     ease_s : float
-        Longest time of the way from or to the neutral pose, s.
+        Longest time of the way from the neutral pose to the first phone, and from the last one back, s.
     """
     times = np.asarray(trajectory.times_s)
     weight = np.ones(len(times))
     lead_s = tail_s = 0.0
     if ease_s > 0 and phones[0].text == silence:
         lead_s = min(ease_s, phones[0].end_s - float(times[0]))
-        weight *= _rise(times, float(times[0]), float(times[0]) + lead_s)
+        weight *= _rise(times, phones[0].end_s - lead_s, phones[0].end_s)
     if ease_s > 0 and phones[-1].text == silence:
         tail_s = min(ease_s, float(times[-1]) - phones[-1].start_s)
-        weight *= _rise(-times, -float(times[-1]), -float(times[-1]) + tail_s)
+        weight *= _rise(-times, -phones[-1].start_s - tail_s, -phones[-1].start_s)
     moving = np.flatnonzero(weight < 1.0)
     values = np.array(trajectory.values_mm)
     away = values[moving] - neutral_mm
