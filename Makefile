@@ -31,11 +31,14 @@ lint: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# one worker for each processor, at most four; the tests of a file stay together, for what they share
+WORKERS := --numprocesses=auto --maxprocesses=4 --dist=loadfile
+
 test: system lint
-	$(ONE_THREAD) $(BIN)/python -m pytest
+	$(ONE_THREAD) $(BIN)/python -m pytest $(WORKERS)
 
 test-fast: setup
-	$(ONE_THREAD) $(BIN)/python -m pytest -m "not slow and not browser and not render and not real"
+	$(ONE_THREAD) $(BIN)/python -m pytest $(WORKERS) -m "not slow and not browser and not render and not real"
 
 # stages against named peers, stages over time, and a drag of the g(u) slider until the head's pixels have changed
 RESULTS := tests/benchmarks/results
