@@ -22,6 +22,7 @@ from corpus_tools.evaluate import (
     leave_one_out,
     one_split,
     tabulate,
+    value_text,
     write_evaluation,
 )
 from corpus_tools.methods import METHODS, Variant, parse_variant
@@ -39,7 +40,16 @@ from corpus_tools.speech import PhoneSet
 __all__ = ["register"]
 
 USUAL_FOLDS = 5
-SHOWN = ("rmse", "r_aperture", "dtw", "dynamic_range", "frechet", "bilabial_closure", "join_peak")
+SHOWN = (
+    "rmse",
+    "r_aperture",
+    "dtw",
+    "dynamic_range",
+    "frechet",
+    "bilabial_closure",
+    "join_peak",
+    "word_rmse",
+)
 
 Progress = Callable[[float, str], None]
 
@@ -98,14 +108,15 @@ def _about(raw: RawCorpus, how: str, variants: Sequence[Variant], seed: int) -> 
 
 def _tell(table: Table, failures: int, out: Path) -> None:
     shown = [m for m in SHOWN if any((method, m) in table.values for method in table.methods)]
+    headers = [f"{m} {METRICS[m].unit}".strip() for m in shown]
     width = max(len(m) for m in table.methods)
-    say("  ".join([" " * width, *(f"{m:>{max(8, len(m))}}" for m in shown)]))
+    say("  ".join([" " * width, *(f"{header:>8}" for header in headers)]))
     for method in table.methods:
-        cells = (table.values.get((method, m)) for m in shown)
-        texts = ("" if c is None else f"{c.value:.3f}" for c in cells)
-        row = (f"{text:>{max(8, len(m))}}" for text, m in zip(texts, shown, strict=True))
-        say("  ".join([f"{method:<{width}}", *row]).rstrip())
-    say("Read error and realism together: 'natural' and 'repetition' are what speech itself scores.")
+        texts = (value_text(table.values.get((method, m))) for m in shown)
+        row = (f"{text:>{max(8, len(header))}}" for text, header in zip(texts, headers, strict=True))
+        say("  ".join([f"{method:<{width}}", *row]))
+    say("Read error and realism together: 'natural' and 'repetition' are what speech itself scores, the")
+    say("latter only in words that are said again (word_rmse). –: nothing to say. Without unit: a ratio.")
     if failures:
         say(f"▲ {failures} times a method could not speak a sentence: left out of its row (table.json).")
     say(f"{len(METRICS)} metrics with intervals: {out / 'report.html'}, {out / 'table.csv'}")

@@ -14,6 +14,8 @@ __all__ = ["interval_plot", "scatter_plot", "ticks"]
 
 _INK, _GRID, _MARK = "#1c2127", "#dde2e7", "#1f6feb"
 _FONT = 'font-family="system-ui,sans-serif" font-size="12"'
+_LETTER = 7.6
+"""Room for a letter of a name, px; names start at the left edge, so that no font cuts them off there."""
 
 
 def ticks(low: float, high: float, n: int = 5) -> FloatArray:
@@ -51,7 +53,7 @@ def _svg(width: float, height: float, title: str, parts: Sequence[str]) -> str:
 
 def interval_plot(rows: Sequence[tuple[str, Estimate]], title: str, natural: float | None = None) -> str:
     """Return a dot with its interval for every row, the axis below, and a dashed line at natural speech."""
-    left, width, pitch, top = 8 + 7.0 * max(len(name) for name, _ in rows), 300.0, 22.0, 26.0
+    left, width, pitch, top = 20 + _LETTER * max(len(name) for name, _ in rows), 300.0, 22.0, 26.0
     marks = [] if natural is None else [natural]
     at = ticks(min([e.low for _, e in rows] + marks), max([e.high for _, e in rows] + marks))
     scale = width / (at[-1] - at[0])
@@ -68,7 +70,7 @@ def interval_plot(rows: Sequence[tuple[str, Estimate]], title: str, natural: flo
     for k, (name, found) in enumerate(rows):
         y = top + pitch * (k + 0.5)
         parts += [
-            _text(left - 8, y + 4, name, "end"),
+            _text(4, y + 4, name, "start"),
             _line(x(found.low), y, x(found.high), y, _MARK, 2),
             _dot(x(found.value), y),
         ]
@@ -100,12 +102,14 @@ def scatter_plot(
         while any(abs(label - other) < 12 and abs(x - there) < 14 for there, other in taken):
             label -= 12
         taken.append((x, label))
+        if label < y:
+            parts.append(_line(x, y, x + 8, label - 2, _INK, 0.6))
         parts += [_dot(x, y), _text(x + 7, label, str(number), "start")]
         parts.append(_text(key, top + 16.0 * number, f"{number}  {name}", "start"))
     parts += [
         _text(left + width / 2, top + height + 34, x_title),
         _text(0, 0, y_title, "middle", f'transform="translate(14 {top + height / 2:.0f}) rotate(-90)"'),
     ]
-    whole = key + 30 + 7.0 * max(len(name) for name, _, _ in points)
+    whole = key + 30 + _LETTER * max(len(name) for name, _, _ in points)
     tall = max(top + height + 42, top + 16.0 * (len(points) + 1))
     return _svg(whole, tall, f"{y_title} against {x_title}", parts)

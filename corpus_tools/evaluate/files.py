@@ -12,6 +12,7 @@ from typing import Any
 from corpus_tools.core import atomic_folder
 from corpus_tools.evaluate.bootstrap import Estimate
 from corpus_tools.evaluate.metrics import METRICS
+from corpus_tools.evaluate.numbers import NOTHING
 from corpus_tools.evaluate.report import report_html
 from corpus_tools.evaluate.runner import Evaluation
 from corpus_tools.evaluate.table import Table, sentence_rows
@@ -23,7 +24,7 @@ SENTENCE_COLUMNS = ("sentence", "fold", "method", "metric", "value")
 
 
 def _number(value: float) -> str:
-    return f"{value:.6g}"
+    return f"{value:.6g}" if abs(value) > NOTHING else "0"
 
 
 def _plain(value: float) -> float | None:

@@ -9,6 +9,7 @@ from typing import Any
 from corpus_tools.evaluate.bootstrap import Estimate
 from corpus_tools.evaluate.drawing import interval_plot, scatter_plot
 from corpus_tools.evaluate.metrics import METRICS
+from corpus_tools.evaluate.numbers import MISSING, interval_text, value_text
 from corpus_tools.evaluate.runner import NATURAL, REPETITION
 from corpus_tools.evaluate.table import Table
 
@@ -59,7 +60,8 @@ _READ = (
     "The row <i>natural</i> is the recording itself, at the rate of the predictions. Intervals are 95 %, "
     "over sentences: percentiles of 1000 resamples within folds; for the Fréchet distance, which resampling "
     "makes larger, the jackknife (each sentence left out once, on a logarithmic scale). Ratios are resampled "
-    "together, and bold where the interval leaves out 1."
+    "together, and bold where the interval leaves out 1. – stands where a metric says nothing, such as "
+    "the correlation of a mean, which does not move."
 )
 
 _YARDSTICKS = (
@@ -73,9 +75,10 @@ _YARDSTICKS = (
 def _cell(found: Estimate | None, clear: bool = False) -> str:
     """Return a value over its interval; `clear` values stand out: their interval does not hold 1."""
     if found is None:
-        return "<td></td>"
-    spread = f"<br><small>{found.low:.3f} – {found.high:.3f}</small>" if found.high > found.low else ""
-    value = f"<b>{found.value:.3f}</b>" if clear else f"{found.value:.3f}"
+        return f"<td>{MISSING}</td>"
+    interval = interval_text(found)
+    spread = f"<br><small>{interval}</small>" if interval else ""
+    value = f"<b>{value_text(found)}</b>" if clear else value_text(found)
     return f"<td>{value}{spread}</td>"
 
 

@@ -103,7 +103,11 @@ def test_filled_samples_do_not_count():
 def test_correlation_knows_direction_and_not_size():
     for name in ("r_aperture", "r_width", "r_protrusion", "r_jaw"):
         assert value(name, compared(scaled(0.5))) == pytest.approx(1, abs=1e-4)
-        assert value(name, compared(scaled(0.0))) == 0
+        assert np.isnan(value(name, compared(scaled(0.0))))  # of a constant it is not defined
+    words = np.ones(RECORDINGS[0].capture.n_frames, dtype=bool)
+    assert np.isnan(value("word_r_aperture", compared(scaled(0.0), words=words)))
+    still, moving = compared(scaled(0.0), words=words), compared(scaled(0.5), words=words)
+    assert value("word_r_aperture", still, moving) == pytest.approx(1, abs=1e-4)
     assert value("r_aperture", compared(scaled(-1.0))) == pytest.approx(-1)
     assert value("r_protrusion", compared(scaled(-1.0))) == pytest.approx(-1)
 

@@ -12,10 +12,13 @@ from corpus_tools.evaluate.comparison import Comparison
 from corpus_tools.evaluate.metrics.registry import METRICS, Metric, mean_of_sentences, metric
 from corpus_tools.evaluate.natural import ARTICULATORS, SPEECH_REGIONS
 
-__all__ = ["correlation", "dtw_distance", "rms_error"]
+__all__ = ["STILL_MM", "correlation", "dtw_distance", "rms_error"]
 
 DTW_BAND_S = 0.24
 """How far time may be bent, s."""
+
+STILL_MM = 1e-9
+"""Standard deviation below which nothing moves, mm."""
 
 _LIP_CHIN = "lips and chin, captured frames of speech"
 
@@ -54,7 +57,7 @@ for _name, _regions, _mask in (
     ("rmse_face", None, "all face markers"),
 ):
     _share = partial(_region, regions=_regions)
-    _share.__doc__ = f"RMSE over the {_mask}: sqrt(mean over frames and markers of |made - recorded|²)."
+    _share.__doc__ = f"RMSE over {_mask}: sqrt(mean over frames and markers of |made - recorded|²)."
     METRICS.add(
         _name,
         Metric(_name, "mm", "low", f"{_mask}, captured frames of speech", _share, mean_of_sentences),
@@ -77,11 +80,9 @@ def _centred(comparison: Comparison) -> FloatArray:
 
 
 def correlation(a: FloatArray, b: FloatArray) -> float:
-    """Return Pearson's r; 0 when `a` does not move (it tells nothing), NaN when `b` does not."""
-    if len(b) < 2 or b.std() < 1e-9:
+    """Return Pearson's r; NaN, as it is not defined, when one of both does not move."""
+    if len(b) < 2 or min(a.std(), b.std()) < STILL_MM:
         return float("nan")
-    if a.std() < 1e-9:
-        return 0.0
     return float(np.corrcoef(a, b)[0, 1])
 
 

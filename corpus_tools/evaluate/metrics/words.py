@@ -8,6 +8,7 @@ import numpy as np
 
 from corpus_tools.core import FloatArray, IntArray
 from corpus_tools.evaluate.comparison import Comparison
+from corpus_tools.evaluate.metrics.error import STILL_MM
 from corpus_tools.evaluate.metrics.registry import metric, root_quotient
 from corpus_tools.evaluate.natural import Natural
 
@@ -34,7 +35,7 @@ def _pearson(
     n = np.maximum(n, 1.0)
     above = xy / n - x / n * y / n
     below = np.sqrt(np.maximum((xx / n - (x / n) ** 2) * (yy / n - (y / n) ** 2), 0.0))
-    return np.asarray(np.divide(above, below, out=np.zeros(len(above)), where=below > 1e-9))
+    return np.asarray(np.divide(above, below, out=np.full(len(above), np.nan), where=below > 1e-9))
 
 
 @metric(
@@ -46,7 +47,12 @@ def _pearson(
     words_only=True,
 )
 def _correlation(comparison: Comparison) -> FloatArray:
-    """Pearson correlation of the lip aperture in repeated words, frames of all sentences pooled."""
+    """Pearson correlation of the lip aperture in repeated words, frames of all sentences pooled.
+
+    A sentence in which the prediction does not move has no correlation, and does not count.
+    """
     here = comparison.in_words & comparison.whole
     x, y = comparison.made_articulators[here, 0], comparison.truth_articulators[here, 0]
+    if len(x) > 1 and x.std() < STILL_MM:
+        return np.full(6, np.nan)
     return np.array([len(x), x.sum(), y.sum(), x @ x, y @ y, x @ y])
