@@ -31,7 +31,7 @@ from corpus_tools.pipeline import (
     write_synthesis,
 )
 from corpus_tools.render import EXPORTERS, check_exports, export_all, export_names
-from corpus_tools.synthesis import StandIn, stand_ins
+from corpus_tools.synthesis import StandIn, stand_ins, stand_ins_told
 
 __all__ = ["register"]
 
@@ -123,7 +123,7 @@ def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus, lab
     )
     say(join_line(synthesis.trajectory.joins))
     missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
-    for sentence in dict.fromkeys(m.sentence for m in missing):
+    for sentence in stand_ins_told(missing, len(synthesis.utterance.labels) - 1):
         say(f"▲ {sentence}")
     for pin, ban in summary["banned_pins"]:
         say(f"▲ The pin '{pin}' speaks what the ban '{ban}' forbids; the pin holds: take one of them out.")

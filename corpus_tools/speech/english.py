@@ -107,7 +107,7 @@ def _check_script(word: str) -> None:
         if sign.isalnum() and not unicodedata.name(sign, "").startswith(("LATIN ", "MODIFIER ")):
             raise InputError(
                 f"The letter '{sign}' (U+{ord(sign):04X}) in '{word}' is not one that English is written in; "
-                "write it in Latin letters, or name the language with --lang."
+                "write it in Latin letters, or name the language as 'language' in corpus.toml."
             )
 
 

@@ -21,7 +21,7 @@ from corpus_tools.synthesis.overlap import overlap_lengths
 from corpus_tools.synthesis.pieces import AlignedPieces, Piece, align_fragments
 from corpus_tools.synthesis.resampling import TimeRbf, fit_time_rbf, fit_uniform_rbf, resample_uniform
 from corpus_tools.synthesis.rest import rest_at_ends
-from corpus_tools.synthesis.stand_ins import StandIn, stand_ins
+from corpus_tools.synthesis.stand_ins import StandIn, stand_ins, stand_ins_told
 from corpus_tools.synthesis.usercurve import DEFAULT_CURVE, curve_order, curve_through, user_weighting
 from corpus_tools.synthesis.visible import how_it_differs
 from corpus_tools.synthesis.viterbi import select_viterbi
@@ -74,6 +74,7 @@ __all__ = [
     "select_greedy",
     "select_viterbi",
     "stand_ins",
+    "stand_ins_told",
     "user_weighting",
     "weighting",
 ]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from corpus_tools.core import Selection, Utterance
 from corpus_tools.synthesis.model import PhoneClasses
 from corpus_tools.synthesis.visible import how_it_differs
 
-__all__ = ["StandIn", "stand_ins"]
+__all__ = ["StandIn", "stand_ins", "stand_ins_told"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,3 +55,19 @@ def stand_ins(selection: Selection, utterance: Utterance, phones: PhoneClasses) 
                 differs = ", and ".join(filter(None, seen))
                 found.append(StandIn(wanted, used, spoken[k].end_s, chosen.unit.key, differs))
     return tuple(found)
+
+
+def stand_ins_told(found: Sequence[StandIn], n_diphones: int) -> tuple[str, ...]:
+    """Return what a reader is told of stand-ins, each once; first how many, when it is most of the diphones.
+
+    Parameters
+    ----------
+    found : sequence of StandIn
+    n_diphones : int
+        Diphones of the utterance.
+    """
+    told = tuple(dict.fromkeys(s.sentence for s in found))
+    if 2 * len(found) <= n_diphones:
+        return told
+    names = ", ".join(dict.fromkeys("-".join(s.diphone) for s in found))
+    return (f"{len(found)} of {n_diphones} diphones have no unit: {names}", *told)

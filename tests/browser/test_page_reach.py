@@ -71,7 +71,9 @@ def test_an_export_goes_beside_the_corpus_and_its_line_is_copied_whole(opened, s
     browser_page, session = opened
     browser_page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     field = browser_page.get_by_label("Config file")
-    assert field.input_value() == str(served[2] / "exports" / "blend.toml")  # the root of the server
+    assert field.input_value() == str(
+        served[2] / "exports" / f"{session.sentence}.toml"
+    )  # the root of the server
     field.fill("mine")
     browser_page.keyboard.press("Tab")
     browser_page.get_by_role("button", name="Export").click()

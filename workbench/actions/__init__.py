@@ -5,6 +5,7 @@ from workbench.actions.desk import Desk
 from workbench.actions.export import (
     cache_folder,
     export_config,
+    export_stem,
     exports_beside,
     replay_command,
     suggested_path,
@@ -22,6 +23,7 @@ __all__ = [
     "ban_unit",
     "cache_folder",
     "export_config",
+    "export_stem",
     "exports_beside",
     "heard",
     "inside_root",

@@ -174,7 +174,7 @@ class Desk:
             return
         if request is None:
             self._results.cancel()
-            self.session.message = ""
+            self.session.param.update(message="", working=False, moving=None, result=None)
             return
         other_target = any(e.name in ("corpus", "sentence", "text", "target_kind") for e in events)
         self.session.working = True

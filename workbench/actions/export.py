@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import shlex
+import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,9 +16,17 @@ from corpus_tools.core import ConfigError, InputError, OutputError
 from workbench.actions.corpora import inside_root
 from workbench.state import Session
 
-__all__ = ["cache_folder", "export_config", "exports_beside", "replay_command", "suggested_path"]
+__all__ = [
+    "cache_folder",
+    "export_config",
+    "export_stem",
+    "exports_beside",
+    "replay_command",
+    "suggested_path",
+]
 
 _APP = "visual-speech-workbench"
+_LONGEST_STEM = 40
 
 
 def cache_folder() -> Path:
@@ -51,19 +61,37 @@ def suggested_path(folder: Path, stem: str) -> Path:
     return path
 
 
+def export_stem(session: Session) -> str:
+    """Return a name for the export of what is spoken: the recording's, or the first words of the text."""
+    kind, what = session.target
+    plain = unicodedata.normalize("NFKD", what).encode("ascii", "ignore").decode()
+    words = re.findall(r"[A-Za-z0-9_]+", plain.lower() if kind == "text" else plain)
+    stem = ""
+    for word in words:
+        if stem and len(stem) + 1 + len(word) > _LONGEST_STEM:
+            break
+        stem = f"{stem}-{word}" if stem else word
+    return stem[:_LONGEST_STEM] or "blend"
+
+
 def replay_command(session: Session, path: str | Path) -> str:
-    """Return the line that makes the same motion in a shell, quoted where needed."""
+    """Return the line that makes the same motion in a shell of any folder, quoted where needed."""
     kind, what = session.target
     corpus = session.corpus
-    folder = session.folder or (str(corpus.description.folder) if corpus is not None else "CORPUS")
-    parts = ["corpus-tools", "synth", folder]
+    folder = Path(session.folder or (corpus.description.folder if corpus is not None else "CORPUS"))
+    parts = ["corpus-tools", "synth", str(folder.expanduser().absolute())]
     if kind == "text":
         parts += [f"--text={what}"]
     else:
         parts += ["--utterance", what]
         if not session.held_out:
             parts.append("--include-self")
-    parts += ["--config", str(path), "--out", "text_out" if kind == "text" else f"{what}_out"]
+    parts += [
+        "--config",
+        str(Path(path).absolute()),
+        "--out",
+        "text_out" if kind == "text" else f"{what}_out",
+    ]
     return shlex.join(parts)
 
 

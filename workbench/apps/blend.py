@@ -15,6 +15,7 @@ from workbench.actions import (
     Desk,
     Gate,
     ban_unit,
+    export_stem,
     exports_beside,
     heard,
     suggested_path,
@@ -146,6 +147,7 @@ class BlendPage:
         watch(self._corpus, "corpus")
         watch(self._opening, "status")
         watch(self._sound, "result")
+        watch(self._suggest, ["corpus", "target_kind", "sentence", "text"])
 
     def arrived(self) -> None:
         """Take up what was done while the page was on its way: the browser has it."""
@@ -193,8 +195,6 @@ class BlendPage:
     def _corpus(self, event: Any) -> None:
         if event.new is not None:
             self.shell.page_title = f"{event.new.description.name} – blend"
-            if self.exports is not None:
-                self.export.suggest(str(suggested_path(self.exports, "blend")))
             self.show(self._begin)
             self._begin = "blend"
 
@@ -206,7 +206,19 @@ class BlendPage:
         return self._export_folder or beside
 
     def _export(self, path: str, done: Callable[[str, str, str], None]) -> None:
-        self.desk.export(path, done, self.exports)
+        def said(kind: str, text: str, where: str) -> None:
+            done(kind, text, where)
+            self._suggest()
+
+        if path == self.export.suggested:  # it may have been written since, by another tab
+            self._suggest()
+            path = self.export.suggested
+        self.desk.export(path, said, self.exports)
+
+    def _suggest(self, *events: Any) -> None:
+        """Suggest a file for what is spoken that does not exist yet."""
+        if self.exports is not None:
+            self.export.suggest(str(suggested_path(self.exports, export_stem(self.session))))
 
     def _opening(self, event: Any) -> None:
         if event.new in ("empty", "error"):
@@ -218,8 +230,8 @@ class BlendPage:
     def _sound(self, event: Any) -> None:
         result, old = event.new, event.old
         if result is None:
-            return
-        if old is None or not old.request.same_target(result.request):
+            self.transport.load_sound(None, 0.0)
+        elif old is None or not old.request.same_target(result.request):
             wanted, self._to_play = self._to_play, None
             plays = wanted == self.session.target
             self.transport.load(result.utterance, result.request.corpus.phones, plays)
@@ -239,7 +251,7 @@ class BlendPage:
 
     def _key(self, action: str, index: int) -> None:
         if action == "curve":
-            if index < len(PRESETS):
+            if index < len(PRESETS) and self.session.mode == "crossfade":
                 self.session.weighting = list(PRESETS.values())[index]
         elif action in self.commands:
             self.commands[action]()

@@ -182,7 +182,8 @@ export function renderBoard({ model, el }) {
 
   const curve = section("weighting", "g(u) at the joins");
   curve.head.append(slot(model, "mode"));
-  curve.card.append(slot(model, "presets"), slot(model, "plot"), slot(model, "sliders"));
+  const presets = slot(model, "presets");
+  curve.card.append(presets, slot(model, "plot"), slot(model, "sliders"));
 
   const lane = section("fragments", "Fragments");
   const sub = document.createElement("span");
@@ -215,9 +216,11 @@ export function renderBoard({ model, el }) {
     warning.textContent = model.warning ? `▲ ${model.warning}` : "";
     warning.title = model.warning;
     root.classList.toggle("stale", model.stale);
+    presets.title = model.unused;
+    presets.classList.toggle("unused", Boolean(model.unused));
     root.classList.toggle("curves", model.shown === "curves");
   };
-  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "shown"]) model.on(name, draw);
+  for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "shown", "unused"]) model.on(name, draw);
   draw();
   root.append(face.card, curve.card, lane.card);
   return root;

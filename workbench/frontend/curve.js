@@ -2,7 +2,7 @@
  * The weighting function g(u) and what it does: left the curve with handles to drag, right the peak
  * acceleration of the selected join for every weighting function and overlap.
  */
-import { drawWeights, handlesOn, moveHandle } from "./curve_edit.js";
+import { drawUnused, drawWeights, handlesOn, moveHandle } from "./curve_edit.js";
 import { drawEffect } from "./effect_draw.js";
 import { fitText } from "./lane_axes.js";
 
@@ -107,7 +107,11 @@ export function renderCurve({ model, el }) {
     if (!handles.drag) handles.points = model.points.length ? model.points : handlesOn(values);
     const chosen = handles.chosen;
     const data = { values, other: floats(model.other_values), handles: handles.points, chosen };
+    ctx.globalAlpha = model.unused ? 0.3 : 1;
+    if (model.unused) handles.points = data.handles = [];
     drawWeights(ctx, box(), data, p);
+    ctx.globalAlpha = 1;
+    drawUnused(ctx, box(), model.unused, p);
     ctx.font = `600 12px ${p.family}`;
     ctx.textAlign = "left";
     ctx.fillStyle = p.ink;
@@ -135,7 +139,7 @@ export function renderCurve({ model, el }) {
     event.stopPropagation();
     ask();
   });
-  for (const name of ["values", "other_values", "points", "effect", "label", "title", "hint"]) {
+  for (const name of ["values", "other_values", "points", "effect", "label", "title", "hint", "unused"]) {
     model.on(name, describe);
   }
   model.on("theme", ask);

@@ -78,7 +78,7 @@ export function drawWeights(ctx, box, data, p) {
     ctx.lineWidth = 1;
   };
   ctx.save();
-  ctx.globalAlpha = 0.45;
+  ctx.globalAlpha *= 0.45;
   curve(data.values, (g) => 1 - g, p.acc, 1.4, []);
   ctx.restore();
   curve(data.other, (g) => g, p.other, 1.6, [5, 4]);
@@ -101,4 +101,13 @@ export function drawWeights(ctx, box, data, p) {
   ctx.textAlign = "right";
   ctx.fillStyle = p.ink2;
   ctx.fillText("in", x1 - 8, y1 - 8 - (y1 - y0) * 0.72);
+}
+
+/** Say over the grey curve why it does nothing. */
+export function drawUnused(ctx, [x0, y0, x1, y1], why, p) {
+  if (!why) return;
+  ctx.font = `600 12px ${p.family}`;
+  ctx.textAlign = "center";
+  ctx.fillStyle = p.ink2;
+  why.split(": ").forEach((part, i) => ctx.fillText(part, 0.5 * (x0 + x1), 0.5 * (y0 + y1) + 16 * i));
 }

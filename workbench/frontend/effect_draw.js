@@ -26,7 +26,7 @@ export function ratioAt(overlaps, ratios, overlap) {
   return ratios.at(-1);
 }
 
-function drawGround(ctx, [x0, y0, x1, y1], toX, toY, p) {
+function drawGround(ctx, [x0, y0, x1, y1], toX, toY, axis, p) {
   ctx.fillStyle = p.sunk;
   ctx.fillRect(x0, y0, x1 - x0, y1 - y0);
   ctx.save();
@@ -47,7 +47,7 @@ function drawGround(ctx, [x0, y0, x1, y1], toX, toY, p) {
     line(ctx, x, y0, x, y1);
     ctx.fillText(String(ms), x, y1 + 14);
   }
-  ctx.fillText("longest overlap, ms", 0.5 * (x0 + x1), y1 + 28);
+  ctx.fillText(axis ?? "longest overlap, ms", 0.5 * (x0 + x1), y1 + 28);
   ctx.textAlign = "left";
   ctx.fillStyle = p.ink3;
   ctx.fillText("natural", x0 + 6, y1 - 6);
@@ -79,7 +79,7 @@ export function drawEffect(ctx, box, data, p) {
   const [x0, y0, x1, y1] = box;
   const toX = (s) => x0 + (s / LONGEST_S) * (x1 - x0);
   const toY = (v) => y1 - (Math.min(v, MOST) / MOST) * (y1 - y0);
-  drawGround(ctx, box, toX, toY, p);
+  drawGround(ctx, box, toX, toY, data.axis, p);
   const { now, other } = data;
   if (!now) {
     if (!data.known) return;

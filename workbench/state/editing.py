@@ -22,6 +22,7 @@ SETTINGS = {
     "shape": "blend__shape",
     "curve_weights": "blend__curve_weights",
     "overlap_s": "blend__overlap_s",
+    "inertial_s": "blend__inertial_s",
     "rule": "blend__rule",
     "mesh": "deform__mesh",
     "deformer": "deform__deformer",
@@ -66,6 +67,9 @@ class Editing(param.Parameterized):
     shape = param.Number(default=0.0, bounds=(-1.0, 1.0))
     curve_weights = param.ClassSelector(class_=tuple, default=DEFAULT_CURVE, doc="Of the curve 'user'.")
     overlap_s = param.Number(default=0.12, bounds=(0.0, 0.5))
+    inertial_s = param.Number(
+        default=0.12, bounds=(0.0, 0.3), inclusive_bounds=(False, True), doc="Of mode 'inertial'."
+    )
     rule = param.Selector(default="shared-phone", objects=["shared-phone", "paper"])
     mesh = param.String(default="base")
     deformer = param.String(default="bid")

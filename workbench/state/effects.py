@@ -9,14 +9,23 @@ import numpy as np
 
 from corpus_tools.core import FloatArray
 from corpus_tools.fragments import natural_band
-from corpus_tools.synthesis import WEIGHTINGS, EffectCurve, effect_curves, narrowed
+from corpus_tools.synthesis import (
+    WEIGHTINGS,
+    EffectCurve,
+    blend_pieces,
+    effect_curves,
+    narrowed,
+    peak_ratios,
+)
 from workbench.state.signals import SIGNALS, Signal
 from workbench.state.stages import Request, Result
 
 __all__ = ["OVERLAPS_S", "Effects", "blend_settings", "compute_effects", "effect_data", "signal_band"]
 
 OVERLAPS_S = (0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.27, 0.3)
-"""Overlaps at which every weighting function is measured, s."""
+"""Overlaps at which every weighting function is measured, s; of inertial joins, the durations."""
+
+_AXES = {"crossfade": "longest overlap, ms", "inertial": "inertial duration, ms"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,8 +82,11 @@ def effect_data(
         return {"overlaps": [], "curves": [], "now": None, "other": None}
     fits = effects is not None and effects.fits(result)
     curves = effects.curves if effects is not None and fits else ()
+    mode = result.request.config.blend.mode
     same = other is not None and join < len(other.ratios) and other.request.same_target(result.request)
+    same = same and other is not None and other.request.config.blend.mode == mode  # else on another axis
     return {
+        "axis": _AXES[mode],
         "overlaps": list(OVERLAPS_S) if fits else [],
         "curves": [{"name": c.weighting, "ratios": [float(r) for r in c.ratios[:, join]]} for c in curves],
         "now": _dot(result, join),
@@ -87,29 +99,35 @@ def effect_data(
 def _dot(result: Result, join: int) -> dict[str, object]:
     blend = result.request.config.blend
     ratio = result.ratios[join]
+    inertial = blend.mode == "inertial"
     return {
-        "name": blend.weighting,
-        "overlap": blend.overlap_s,
+        "name": "inertial" if inertial else blend.weighting,
+        "overlap": blend.inertial_s if inertial else blend.overlap_s,
         "ratio": ratio if np.isfinite(ratio) else None,
-        "moved": blend.shape != 0.0,
+        "moved": not inertial and blend.shape != 0.0,
     }
 
 
-def blend_settings(request: Request) -> dict[str, object]:
+def blend_settings(request: Request) -> dict[str, Any]:
     """Return the blend settings that are the same for every curve of the effect plot."""
-    own = {"weighting", "shape", "overlap_s", "curve_weights"}
+    own = {"weighting", "shape", "overlap_s", "curve_weights", "inertial_s"}
     return dict(request.config.blend.model_dump(exclude=own))
 
 
 def compute_effects(result: Result) -> Effects:
-    """Measure every weighting function at every overlap on the pieces of a result."""
-    natural = result.request.corpus.natural
+    """Measure every weighting function at every overlap on the pieces of a result.
+
+    Inertial joins know neither: they are measured at every duration instead, as one curve "inertial".
+    """
+    natural, settings = result.request.corpus.natural, blend_settings(result.request)
     pieces = narrowed(result.pieces, natural)
-    shown = [n for n in WEIGHTINGS if n != "user"]
-    if result.request.config.blend.mode != "crossfade":  # g(u) does nothing there: one line, not eight
-        shown = [str(result.request.config.blend.weighting)]
-    names: dict[str, dict[str, Any]] = {name: {} for name in shown}
-    curves = effect_curves(pieces, natural, names, OVERLAPS_S, **blend_settings(result.request))
+    if result.request.config.blend.mode == "inertial":
+        blended = (blend_pieces(pieces, **{**settings, "inertial_s": s}) for s in OVERLAPS_S)
+        ratios = np.array([peak_ratios(b, natural) for b in blended])
+        curves: tuple[EffectCurve, ...] = (EffectCurve("inertial", np.asarray(OVERLAPS_S), ratios),)
+    else:
+        names: dict[str, dict[str, Any]] = {name: {} for name in WEIGHTINGS if name != "user"}
+        curves = effect_curves(pieces, natural, names, OVERLAPS_S, **settings)
     return Effects(result, curves, signal_band(result, SIGNALS[0]))
 
 

@@ -17,6 +17,7 @@ _NAMES = {
     "weighting": "g(u)",
     "shape": "crossover",
     "overlap_s": "overlap",
+    "inertial_s": "inertial duration",
     "rule": "overlap rule",
     "mesh": "head",
     "deformer": "deformer",
@@ -30,7 +31,7 @@ _NAMES = {
     "bans": "bans",
 }
 _CURVE = {"curve_weights", "weighting", "shape"}
-_SLIDES = ({"shape"}, {"overlap_s"})
+_SLIDES = ({"shape"}, {"overlap_s"}, {"inertial_s"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +66,7 @@ class Entry:
 
 
 def _value_text(name: str, value: Any) -> str:
-    if name == "overlap_s":
+    if name in ("overlap_s", "inertial_s"):
         return f"{1000 * value:.0f} ms"
     if name == "shape":
         return f"{value:+.2f}"

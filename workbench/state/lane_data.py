@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from corpus_tools import synthesis
 from corpus_tools.core import ChosenUnit, FloatArray, Selection, Utterance
-from corpus_tools.fragments import missing_diphones
 from corpus_tools.speech import PhoneSet, lip_aperture_mm
-from corpus_tools.synthesis import DEFAULT_CURVE, how_it_differs, weighting
+from corpus_tools.synthesis import DEFAULT_CURVE, stand_ins_told, weighting
 from workbench.state.effects import Effects
 from workbench.state.picks import pin_at
 from workbench.state.stages import Result
@@ -24,7 +24,6 @@ __all__ = [
     "band_data",
     "fragment_details",
     "joins_data",
-    "missing_of",
     "phone_rows",
     "score",
     "stand_ins",
@@ -162,26 +161,11 @@ def band_data(effects: Effects | None) -> dict[str, bytes]:
     return dict(zip(("times", "low", "high"), map(_float32, effects.band), strict=True))
 
 
-def missing_of(result: Result) -> tuple[tuple[str, str], ...]:
-    """Return the diphones of the target that the corpus does not hold (the held-out recording left out)."""
-    request = result.request
-    return missing_diphones(request.corpus.inventory, result.utterance.labels, request.exclude)
-
-
-def stand_ins(result: Result) -> list[str]:
-    """Return what stood in where a diphone is missing, as "UH spoken as UW (bbaf2n, at 1.20 s)".
-
-    Where the viseme class had to differ, it says what is seen to differ.
-    """
-    known = result.request.corpus.phones
-    phones = result.utterance.phones.intervals
-    found = []
-    for unit in result.selection.chosen:
-        for index, wanted, used in unit.backoff:
-            where = f"{unit.unit.recording}, at {phones[index].centre_s:.2f} s"
-            differs = how_it_differs(known, wanted, used)
-            found.append(f"{wanted} spoken as {used} ({where}{'; ' + differs if differs else ''})")
-    return list(dict.fromkeys(found))
+def stand_ins(result: Result) -> tuple[str, ...]:
+    """Return what is told of the diphones that no unit has and of what stood in, as the command line does."""
+    utterance = result.utterance
+    found = synthesis.stand_ins(result.selection, utterance, result.request.corpus.phones)
+    return stand_ins_told(found, len(utterance.labels) - 1)
 
 
 def weighting_samples(
@@ -209,7 +193,7 @@ class FragmentDetails:
     backoff : tuple of (target phone, phone spoken instead)
     join : dict or None
         The join with the fragment before it, as of :func:`joins_data`, with `gap_mm_s`, and of that fragment
-        `before` (its id), `before_text` and `before_slot`.
+        `before` (its id), `before_text` and `before_slot`; `inertial`: the duration of an inertial join, s.
     """
 
     index: int
@@ -237,8 +221,10 @@ def _join_before(result: Result, selection: Selection, index: int) -> dict[str, 
     join = result.trajectory.joins[index - 1]
     before = selection.chosen[index - 1].unit.recording
     slots = source_slots(tuple(c.unit.recording for c in selection.chosen))
+    blend = result.request.config.blend
     return {
         **joins_data(result)[index - 1],
+        "inertial": blend.inertial_s if blend.mode == "inertial" else None,
         "gap_mm_s": join.gap_mm_s,
         "before": before,
         "before_text": result.request.corpus.utterance(before).text,

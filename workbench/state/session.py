@@ -188,9 +188,15 @@ class Session(Editing):
         self.param.update(selected=index, options=None)
 
     def refuse(self, number: int, message: str) -> bool:
-        """Show why a request could not be computed; the last good result stays. False when it is old news."""
+        """Show why a request could not be computed; False when it is old news.
+
+        The last good result stays, unless it is of another sentence.
+        """
         if number <= self._accepted:
             return False
         self._accepted = number
+        now = self.request()
+        if self.result is not None and (now is None or not now.same_target(self.result.request)):
+            self.param.update(moving=None, result=None)
         self.message = message
         return True

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from corpus_tools.core import counted
-from workbench.state import Effects, Result, missing_of, stand_ins
+from workbench.state import Effects, Result, stand_ins
 
 __all__ = ["beside_of", "head_text", "lower_text", "missing_text"]
 
 
 BESIDE = ("female", "male", "child")
 """Heads that stand beside the first unless others are chosen (our choice: faces that differ in size)."""
+
+MOST_TOLD = 3
+"""Stand-ins told one by one (our choice: a line of the lane)."""
 
 
 def beside_of(mesh: str) -> list[str]:
@@ -27,18 +30,17 @@ def head_text(result: Result, cast: tuple[Result, ...] = ()) -> str:
 
 
 def missing_text(result: Result) -> str:
-    """Return which diphones the corpus does not hold, and what stood in; empty when it holds all."""
-    stood = stand_ins(result)
-    if not stood:
-        return ""
-    gone = ", ".join(f"{a}-{b}" for a, b in missing_of(result)) or "Banned units"
-    more = f" and {counted(len(stood) - 3, 'more phone')}" if len(stood) > 3 else ""
-    return f"No motion for {gone}: {'; '.join(stood[:3])}{more}"
+    """Return which diphones no unit has and what stood in, in one line; empty without any."""
+    told = stand_ins(result)
+    if len(told) > 1 and " diphones have no unit: " in told[0]:
+        return told[0]
+    more = f" · and {len(told) - MOST_TOLD} more" if len(told) > MOST_TOLD else ""
+    return f"{' · '.join(told[:MOST_TOLD])}{more}"
 
 
 def lower_text(effects: Effects | None, result: Result, join: int) -> str:
-    """Return what would bring a join lower still, empty when nothing does by more than 2 %."""
+    """Return what would bring a join lower still, empty when nothing does by at least 5 % (our choice)."""
     best = effects.best(join) if effects is not None and effects.fits(result) else None
-    if best is None or best[2] > 0.98 * result.ratios[join]:
+    if best is None or best[2] > 0.95 * result.ratios[join]:
         return ""
     return f"lower still: {best[0]} at {1000 * best[1]:.0f} ms, {best[2]:.2f}"

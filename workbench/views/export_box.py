@@ -63,7 +63,7 @@ class ExportBox(pn.viewable.Viewer):
         on_export: Callable[[str, Callable[[str, str, str], None]], None],
         **params: Any,
     ) -> None:
-        self._run, self._suggested = on_export, ""
+        self._run, self.suggested = on_export, ""
         self.kind = self.text = self.where = ""
         super().__init__(**params)
         self.path = text_field(controls, "Config file", margin=(10, 4, 4, 12))
@@ -75,8 +75,9 @@ class ExportBox(pn.viewable.Viewer):
 
     def suggest(self, path: str) -> None:
         """Suggest a file, unless the person has typed another."""
-        if (self.path.value or "") == self._suggested:
-            self._suggested = path
+        typed = (self.path.value or "") != self.suggested
+        self.suggested = path
+        if not typed:
             self.path.value = path
 
     def submit(self) -> None:

@@ -69,6 +69,7 @@ class Face(pn.viewable.Viewer):
     def show_rest(self, name: str) -> None:
         """Show a head by name at rest, before there is anything that moves it."""
         mesh = mesh_by_name_or_file(name)
+        self.result = self._head = None
         self.mesh_view.show_actors(head_actors(mesh), camera=head_camera(mesh, ASIDE))
 
     def show(self, result: Result) -> None:

@@ -52,12 +52,17 @@ def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -
     ratio = join["ratio"]
     peak = "unknown" if ratio is None else f"{ratio:.2f} × natural p95"
     frames = round(join["overlap"] * frames_hz)
+    over, inertial = f"{join['overlap']:.3f} s, {counted(frames, 'frame')}", join["inertial"]
+    if inertial:
+        over = f"in {inertial:.3f} s to either side"
+        if join["overlap"] < 2 * inertial - 0.001:  # at an end of the sentence
+            over += f", {join['overlap']:.3f} s in all"
     colour = colours[join["before_slot"] % len(colours)]
     return (
         f'<dt>Out</dt><dd title="{_escape(join["before"])}: {_escape(join["before_text"])}">'
         f"{_source(join['before'], join['before_text'], colour)}</dd>"
         f"<dt>Peak accel.</dt><dd>{peak}</dd>"
-        f"<dt>Overlap</dt><dd>{join['overlap']:.3f} s, {counted(frames, 'frame')}</dd>"
+        f"<dt>{'Dies away' if inertial else 'Overlap'}</dt><dd>{over}</dd>"
         f"<dt>Gap before</dt><dd>{join['gap']:.2f} mm, {join['gap_mm_s']:.0f} mm/s</dd>"
     )
 

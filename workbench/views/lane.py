@@ -93,6 +93,7 @@ class WeightingPlot(pn.custom.JSComponent):
     title = param.String(default="")
     hint = param.String(default="")
     effect = param.Dict(default=NO_EFFECT)
+    unused = param.String(default="", doc="Why g(u) does nothing now: it is drawn grey, without handles.")
     theme = param.Selector(default="light", objects=list(THEMES))
     palettes = param.Dict(default={})
 

@@ -123,6 +123,7 @@ class Board(pn.custom.JSComponent):
         default=0, doc="Grows with every motion of the head: what is computed goes on well."
     )
     side = param.Selector(default="B", objects=["A", "B"], doc="Which of two settings is shown.")
+    unused = param.String(default="", doc="Why g(u) does nothing now; empty when it does something.")
     compared = param.Boolean(default=False, doc="Whether the two settings differ.")
 
     _esm = esm("board", "renderBoard")

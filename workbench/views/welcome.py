@@ -18,7 +18,8 @@ __all__ = ["Welcome", "progress_html", "welcome_html"]
 
 _INIT = (
     "corpus-tools init WORK --motion 'RECORDINGS/markers/{id}.npz' "
-    "--audio 'RECORDINGS/wav/{id}.wav' --labels 'RECORDINGS/textgrid/{id}.TextGrid'"
+    "--audio 'RECORDINGS/wav/{id}.wav' --labels 'RECORDINGS/textgrid/{id}.TextGrid' "
+    "--set frame_time=centre --set head_scale=true"
 )
 
 
@@ -42,6 +43,9 @@ def _help_html() -> str:
         '<div class="vsw-html welcome"><p>Your own recordings (marker motion, sound, phone labels) become a '
         "corpus with one line in a terminal; <code>{id}</code> stands for the name of a recording:</p>"
         f"<pre>{html.escape(_INIT)}</pre>"
+        "<p><code>frame_time=centre</code> says that frame i was taken at (i + 0.5) / rate, as video frames "
+        "are; <code>start</code> says i / rate. <code>head_scale=true</code> lets head removal scale, which "
+        "landmarks from one camera need and optical capture must not have.</p>"
         "<p>Then <code>corpus-tools check WORK</code> says what to mend; open WORK in the field above."
         " Without recordings, start with the simulated corpus.</p></div>"
     )

@@ -29,6 +29,7 @@ from workbench.views.trajectories import Trajectories
 __all__ = ["BlendBoard"]
 
 _MODES = {"Cross-fade": "crossfade", "Inertial": "inertial"}
+_UNUSED = "Inertial joins use no g(u): the offset of the fragments dies away"
 
 
 class BlendBoard(pn.viewable.Viewer):
@@ -72,13 +73,19 @@ class BlendBoard(pn.viewable.Viewer):
         self.shape = slider(
             controls, "Crossover early – late", "shape", (-1.0, 1.0), step=0.02, format="0.00"
         )
+        self.inertial = slider(
+            *(controls, "Inertial duration, ms", "inertial_s", (10.0, 300.0)),
+            factor=1000.0,
+            step=5.0,
+            format="0",
+        )
         self.board = Board(
             face=self.face.view,
             inset=self.inset.view,
             mode=self.mode,
             presets=self.presets,
             plot=self.plot,
-            sliders=pn.Row(self.overlap, self.shape, sizing_mode="stretch_width", margin=0),
+            sliders=pn.Row(self.overlap, self.shape, self.inertial, sizing_mode="stretch_width", margin=0),
             lane=self.lane,
             curves=self.trajectories.__panel__(),
             on_action=self._act,
@@ -90,6 +97,7 @@ class BlendBoard(pn.viewable.Viewer):
         watch(self._recorded, ["recorded", "cast"])
         watch(self._cast, ["cast", "beside"])
         watch(self._select, "selected")
+        watch(self._mode, "mode")
         watch(self._curve, ["weighting", "shape", "curve_weights", "kept", "side"])
         watch(self._effect, ["result", "other", "effects", "selected"])
         watch(self._state, ["message", "working", "side", "edits"])
@@ -99,9 +107,18 @@ class BlendBoard(pn.viewable.Viewer):
             self.face.show_rest(session.mesh)
         else:
             self.face.show(session.moving)
+        self._mode()
         self._curve()
         self._result()
         self._opening()
+
+    def _mode(self, *events: Any) -> None:
+        """Offer what the joins of this mode have."""
+        inertial = self._session.mode == "inertial"
+        self.board.unused = self.plot.unused = _UNUSED if inertial else ""
+        self.presets.disabled = inertial
+        self.inertial.visible = inertial
+        self.overlap.visible = self.shape.visible = not inertial
 
     def _look(self, event: Any) -> None:
         """Look at the recording as at the blend."""
@@ -246,7 +263,9 @@ class BlendBoard(pn.viewable.Viewer):
         )
 
     def _moving(self, event: Any) -> None:
-        if event.new is not None and self.face.result is not event.new:
+        if event.new is None and event.old is not None:
+            self.face.show_rest(self._session.mesh)
+        elif event.new is not None and self.face.result is not event.new:
             self.board.moves += 1
             self.face.show(event.new)
             self._overlays()
@@ -256,6 +275,7 @@ class BlendBoard(pn.viewable.Viewer):
         if result is None:
             self.lane.clear()
             self.plot.param.update(effect=NO_EFFECT, title="", hint="")
+            self.board.param.update(head_text="", lane_text="", held_out_text="", warning="")
             return
         self.lane.show(result, self._session.other if self._session.side == "B" else None)
         self.lane.selected = self._session.selected

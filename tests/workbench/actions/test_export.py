@@ -6,7 +6,7 @@ import pytest
 
 from corpus_tools.config import load_config
 from corpus_tools.core import InputError, OutputError
-from workbench.actions import export_config, inside_root, replay_command, suggested_path
+from workbench.actions import export_config, export_stem, inside_root, replay_command, suggested_path
 from workbench.state import Session
 
 
@@ -63,3 +63,27 @@ def test_the_suggested_file_is_new(tmp_path):
     (tmp_path / "blend.toml").touch()
     (tmp_path / "blend-2.toml").touch()
     assert suggested_path(tmp_path, "blend").name == "blend-3.toml"
+
+
+def test_the_command_works_from_any_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    parts = shlex.split(replay_command(Session(folder="a corpus", sentence="s"), "c.toml"))
+    assert parts[2] == str(tmp_path / "a corpus")
+    assert parts[parts.index("--config") + 1] == str(tmp_path / "c.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "stem"),
+    [
+        ("Place blue by F 2, now!", "place-blue-by-f-2-now"),
+        ("../../etc/passwd", "etc-passwd"),
+        ("ça va", "ca-va"),
+        ("", "blend"),
+        ("?!", "blend"),
+        ("x" * 300, "x" * 40),
+        ("one two three four five six seven eight nine ten", "one-two-three-four-five-six-seven-eight"),
+    ],
+)
+def test_an_export_is_named_after_what_is_spoken(text, stem):
+    assert export_stem(Session(target_kind="text", text=text)) == stem
+    assert export_stem(Session(sentence="bbaf2n")) == "bbaf2n"

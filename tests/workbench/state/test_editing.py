@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from corpus_tools import synthesis
 from corpus_tools.core import NoUnitError
 from workbench.actions import ban_unit, heard, options_shown, swap_to, swap_unit, toggle_pin, unban
 from workbench.state import (
@@ -13,12 +14,15 @@ from workbench.state import (
     aperture_curves,
     band_data,
     compute_effects,
+    effect_data,
+    fragment_details,
     marker_signal,
     score,
     signal_data,
     signals_of,
     stand_ins,
 )
+from workbench.views.board_texts import missing_text
 
 
 class Visit:
@@ -252,16 +256,40 @@ def test_the_recording_moves_the_same_head_and_a_text_has_none(visit):
     assert visit.stages.recorded(visit.run()) is None
 
 
-def test_what_stood_in_is_told(visit):
+def test_what_stood_in_is_told_as_the_command_line_does(visit):
     session = visit.session
-    used = {c.unit.recording for c in session.result.selection.chosen}
-    assert stand_ins(session.result) == [
-        line for line in stand_ins(session.result) if any(name in line for name in used)
-    ]
+    session.param.update(target_kind="text", text="boys enjoy joyful noise")
+    result = visit.run()
+    found = synthesis.stand_ins(result.selection, result.utterance, session.corpus.phones)
+    told = stand_ins(result)
+    assert found
+    assert told[-1] in {s.sentence for s in found}
+    n = len(result.utterance.labels) - 1
+    first = f"{len(found)} of {n} diphones have no unit: "
+    assert told[0].startswith(first) == (2 * len(found) > n)
+    assert missing_text(result).startswith(told[0])
     every = tuple(n for n in session.sentences if n != session.sentence)
-    session.bans = every
+    session.param.update(target_kind="recording", bans=every)
     with pytest.raises(NoUnitError):
         visit.stages.run(session.request())
+
+
+def test_inertial_joins_are_measured_by_their_duration(visit):
+    session = visit.session
+    session.param.update(mode="inertial", inertial_s=0.06)
+    result = visit.run()
+    effects = compute_effects(result)
+    (curve,) = effects.curves
+    data = effect_data(effects, result, None, 0)
+    at = OVERLAPS_S.index(0.06)
+    assert data["axis"].startswith("inertial duration")
+    assert data["now"]["overlap"] == 0.06
+    assert data["now"]["ratio"] == pytest.approx(curve.ratios[at, 0])
+    assert np.ptp(curve.ratios[:, 0]) > 0.01  # no flat line
+    session.inertial_s = 0.2
+    assert effects.fits(visit.run())
+    join = fragment_details(session.result, 1).join
+    assert join["inertial"] == 0.2
 
 
 def test_trajectories_hold_the_blend_and_what_each_fragment_goes_on_with(visit):

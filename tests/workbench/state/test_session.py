@@ -42,6 +42,7 @@ def test_every_setting_reaches_the_config(opened):
         "shape": 0.25,
         "curve_weights": (0.0, 0.0, 1.0, 3.0, 0.0, 0.0),
         "overlap_s": 0.08,
+        "inertial_s": 0.2,
         "rule": "paper",
         "mesh": "male",
         "deformer": "bid",
