@@ -133,6 +133,7 @@ def test_setup_installs_once_and_again_only_when_something_changed(project: Path
         return len(log.read_text(encoding="utf-8").splitlines())
 
     assert n_installs() == 1
+    assert "--quiet" in log.read_text(encoding="utf-8"), "no bars in a log"
     assert n_installs() == 1
     assert f".ci/constraints/{version}.txt" in log.read_text(encoding="utf-8")
     with (checkout / "pyproject.toml").open("a", encoding="utf-8") as stream:
@@ -145,6 +146,8 @@ def test_setup_installs_once_and_again_only_when_something_changed(project: Path
     moved = checkout.rename(tmp_path / "moved")
     result = call(moved / ".ci/setup", PIP_LOG=str(log), PYTHON=str(python))
     assert result.returncode == 0, result.stderr
+    stages = [line[:3] for line in result.stdout.splitlines()[1:]]
+    assert stages == ["1/3", "2/3", "3/3"], "one line per stage, where there is no terminal"
     assert str(moved) in (moved / ".venv/bin/pip").read_text(encoding="utf-8")
 
 
