@@ -25,6 +25,16 @@ def test_links_lead_somewhere(link: str) -> None:
     assert (house.ROOT / link).exists(), link
 
 
+def test_pictures_are_small_and_the_only_ones() -> None:
+    """Pictures of the README stand in docs: a package would carry them into every wheel."""
+    shown = set(re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README))
+    assert shown == {f"docs/{path.name}" for path in (house.ROOT / "docs").iterdir()}
+    for picture in shown:
+        data = (house.ROOT / picture).read_bytes()
+        assert data.startswith(b"\x89PNG"), picture
+        assert len(data) < 250_000, f"{picture} has {len(data)} bytes"
+
+
 @pytest.mark.parametrize(
     "path", sorted(set(re.findall(r"`((?:corpus_tools|workbench|tests|notebooks|\.ci)/[^`<> ]*)`", README)))
 )
