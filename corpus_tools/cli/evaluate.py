@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import platform
+import sys
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -94,6 +96,23 @@ def _split(
     return raw, k_folds(raw.names, n, seed), f"{n} folds"
 
 
+def _telling_folds(progress: Progress, n: int) -> Progress:
+    """Return a progress that also says on stderr when a fold begins, where no bar is drawn."""
+    told = ""
+
+    def report(fraction: float, what: str) -> None:
+        nonlocal told
+        fold = what.partition(":")[0]
+        if fold.startswith("fold ") and fold != told and sys.stderr is not None and not sys.stderr.isatty():
+            told = fold
+            with contextlib.suppress(OSError):  # whoever reads it may be gone
+                sys.stderr.write(f"{fold} of {n}, {100 * fraction:.0f} % done\n")
+                sys.stderr.flush()
+        progress(fraction, what)
+
+    return report
+
+
 def _about(raw: RawCorpus, how: str, variants: Sequence[Variant], seed: int) -> dict[str, Any]:
     return {
         "corpus": raw.description.name or raw.description.folder.name,
@@ -135,7 +154,11 @@ def _run(
     with progress_bar("reading") as progress:
         raw, split, how = _split(corpus, test_corpus, folds, alone, seed, lambda f, w: progress(0.03 * f, w))
         result = evaluate(
-            _Cleaned(raw), split, variants, seed=seed, progress=lambda f, w: progress(0.03 + 0.94 * f, w)
+            _Cleaned(raw),
+            split,
+            variants,
+            seed=seed,
+            progress=_telling_folds(lambda f, w: progress(0.03 + 0.94 * f, w), len({f.group for f in split})),
         )
         progress(0.97, "resampling sentences")
         table = tabulate(result, seed)
