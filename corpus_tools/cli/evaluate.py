@@ -57,17 +57,27 @@ Progress = Callable[[float, str], None]
 
 
 class _Cleaned:
-    """A corpus as the evaluation asks for it: cleaned anew by what may be known in a fold."""
+    """A corpus as the evaluation asks for it: read and cleaned anew by what may be known in a fold.
 
-    def __init__(self, raw: RawCorpus) -> None:
-        self._raw = raw
+    Recordings as captured are held while they are cleaned, not while methods are fitted: reading them again
+    is a small part of a fold.
+    """
 
-    @property
-    def phones(self) -> PhoneSet:
-        return self._raw.phones
+    def __init__(self, read: Callable[[], RawCorpus]) -> None:
+        self._read = read
+        self._raw: RawCorpus | None = read()
+        self.phones: PhoneSet = self._raw.phones
+        self.names, self.skipped = self._raw.names, self._raw.skipped
+        self.description = self._raw.description
 
     def cleaned(self, learn_from: Collection[str], progress: Progress) -> Sequence[Recording]:
-        return cleaned_recordings(self._raw, learn_from=frozenset(learn_from), progress=progress)[0]
+        raw, self._raw = self._raw or self._read(), None
+        if raw.names != self.names:
+            raise InputError(
+                f"'{self.description.folder}': {len(raw.names)} recordings are usable and {len(self.names)} "
+                "were at the start; leave the corpus as it is until the evaluation is done."
+            )
+        return cleaned_recordings(raw, learn_from=frozenset(learn_from), progress=progress)[0]
 
 
 def _variants(methods: str | None) -> list[Variant]:
@@ -83,17 +93,26 @@ def _variants(methods: str | None) -> list[Variant]:
 
 def _split(
     corpus: Path, test_corpus: Path | None, folds: int | None, alone: bool, seed: int, progress: Progress
-) -> tuple[RawCorpus, tuple[Fold, ...], str]:
+) -> tuple[_Cleaned, tuple[Fold, ...], str]:
     """Return the recordings, which of them are tested together, and how that is called."""
-    raw = read_corpus(corpus, progress, keep_sound=False)
+    known: list[int] = []
+
+    def read() -> RawCorpus:
+        report = (lambda fraction, what: None) if known else progress  # the bar does not run back
+        raw = read_corpus(corpus, report, keep_sound=False)
+        known[:] = [len(raw.names)]
+        if test_corpus is None:
+            return raw
+        return joined_corpora(raw, read_corpus(test_corpus, report, keep_sound=False))
+
+    source = _Cleaned(read)
+    names, tested = source.names[: known[0]], source.names[known[0] :]
     if test_corpus is not None:
-        both = joined_corpora(raw, read_corpus(test_corpus, progress, keep_sound=False))
-        tested = both.names[len(raw.names) :]
-        return both, one_split(raw.names, tested), f"test corpus of {len(tested)} sentences"
+        return source, one_split(names, tested), f"test corpus of {len(tested)} sentences"
     if alone:
-        return raw, leave_one_out(raw.names, seed), "leave-one-out"
+        return source, leave_one_out(names, seed), "leave-one-out"
     n = USUAL_FOLDS if folds is None else folds
-    return raw, k_folds(raw.names, n, seed), f"{n} folds"
+    return source, k_folds(names, n, seed), f"{n} folds"
 
 
 def _telling_folds(progress: Progress, n: int) -> Progress:
@@ -113,13 +132,13 @@ def _telling_folds(progress: Progress, n: int) -> Progress:
     return report
 
 
-def _about(raw: RawCorpus, how: str, variants: Sequence[Variant], seed: int) -> dict[str, Any]:
+def _about(source: _Cleaned, how: str, variants: Sequence[Variant], seed: int) -> dict[str, Any]:
     return {
-        "corpus": raw.description.name or raw.description.folder.name,
+        "corpus": source.description.name or source.description.folder.name,
         "split": how,
         "seed": seed,
         "methods": {v.label: {**v.method.settings, **v.changes} for v in variants},
-        "left_out": raw.skipped,
+        "left_out": source.skipped,
         "program": {"version": corpus_tools.__version__, "code_sha256": code_hash()},
         "libraries": library_versions(),
     }
@@ -152,9 +171,11 @@ def _run(
     seed: int,
 ) -> tuple[Table, dict[str, Any], int]:
     with progress_bar("reading") as progress:
-        raw, split, how = _split(corpus, test_corpus, folds, alone, seed, lambda f, w: progress(0.03 * f, w))
+        source, split, how = _split(
+            corpus, test_corpus, folds, alone, seed, lambda f, w: progress(0.03 * f, w)
+        )
         result = evaluate(
-            _Cleaned(raw),
+            source,
             split,
             variants,
             seed=seed,
@@ -162,7 +183,7 @@ def _run(
         )
         progress(0.97, "resampling sentences")
         table = tabulate(result, seed)
-        about = _about(raw, how, variants, seed)
+        about = _about(source, how, variants, seed)
         now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
         run = {"date": now, "host": platform.node(), "system": platform.platform()}
         write_evaluation(out, result, table, about, run)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections import defaultdict
 from collections.abc import Callable, Collection, Sequence
@@ -131,7 +132,8 @@ def evaluate(
 
     Nothing of a tested recording's motion reaches a method: head shape, face model, postures, principal
     components, inventories and lips come from the training recordings of the fold; of the tested one only
-    phones and times are used. It is compared in its own posture.
+    phones and times are used. It is compared in its own posture. The recordings of a group, and all that was
+    fitted on them, are let go before those of the next are cleaned.
 
     Parameters
     ----------
@@ -147,25 +149,37 @@ def evaluate(
         ``progress(fraction, what)``; may raise to cancel.
     """
     collected = _Collected()
-    groups = sorted({fold.group for fold in folds})
     done, total = 0, len(folds)
-    for group in groups:
+    for group in sorted({fold.group for fold in folds}):
         mine = [fold for fold in folds if fold.group == group]
-        tested = {name for fold in mine for name in fold.test}
-        known = sorted({name for fold in mine for name in (*fold.train, *fold.test)} - tested)
-        at = done / total
-        cleaned = source.cleaned(known, lambda f, w, at=at: progress(at + 0.2 * f / total, w))  # type: ignore[misc]
-        recordings = {r.name: r for r in cleaned}
-        others = TrainingSet([recordings[n] for n in known], source.phones, rate_hz)
-        collected.naturals.append(natural_of(others))
-        for fold in mine:
-            same = set(fold.train) == set(known)
-            training = others if same else _training(recordings, fold, source.phones, rate_hz)
-            part = lambda f, w, at=done / total: progress(at + (0.2 + 0.8 * f) / total, w)  # noqa: E731
-            _run_fold(collected, fold, training, recordings, variants, seed, part)
-            done += 1
+        part = lambda f, w, at=done: progress((at + f) / total, w)  # noqa: E731
+        _run_group(collected, source, mine, variants, rate_hz, seed, part)
+        done += len(mine)
+        gc.collect()
     progress(1.0, "counting")
     return collected.whole()
+
+
+def _run_group(
+    collected: _Collected,
+    source: Source,
+    folds: Sequence[Fold],
+    variants: Sequence[Variant],
+    rate_hz: float,
+    seed: int,
+    progress: Progress,
+) -> None:
+    """Clean for the folds that are tested together, and run them; ``progress(folds done, what)``."""
+    tested = {name for fold in folds for name in fold.test}
+    known = sorted({name for fold in folds for name in (*fold.train, *fold.test)} - tested)
+    recordings = {r.name: r for r in source.cleaned(known, lambda f, w: progress(0.2 * f, w))}
+    others = TrainingSet([recordings[n] for n in known], source.phones, rate_hz)
+    collected.naturals.append(natural_of(others))
+    for index, fold in enumerate(folds):
+        same = set(fold.train) == set(known)
+        training = others if same else _training(recordings, fold, source.phones, rate_hz)
+        part = lambda f, w, at=index: progress(at + 0.2 + 0.8 * f, w)  # noqa: E731
+        _run_fold(collected, fold, training, recordings, variants, seed, part)
 
 
 def _training(recordings: dict[str, Recording], fold: Fold, phones: PhoneSet, rate_hz: float) -> TrainingSet:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gc
 import json
 import os
 import re
@@ -10,11 +11,17 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from strategies.talking import talking_corpus
 
+from corpus_tools.cli.evaluate import _Cleaned
+from corpus_tools.core import InputError
 from corpus_tools.evaluate import METRICS
+from corpus_tools.pipeline import read_corpus
 
 FILES = {"table.csv", "sentences.csv", "table.json", "report.html", "run.json"}
 
@@ -120,6 +127,35 @@ def test_leave_one_out_and_a_test_corpus(tool, corpus, tmp_path):
     assert code == 0
     assert json.loads(out.splitlines()[-1])["sentences"] == 3
     assert {r["sentence"] for r in rows(tmp_path / "t/sentences.csv")} == {f"work/s{i:02d}" for i in range(3)}
+
+
+def test_recordings_as_captured_are_let_go_once_they_are_cleaned(corpus):
+    captured = []
+
+    def read():
+        raw = read_corpus(corpus, keep_sound=False)
+        captured.extend(weakref.ref(c.positions_mm) for c in raw.captures)
+        return raw
+
+    source = _Cleaned(read)
+    first = source.cleaned(source.names[2:], lambda f, w: None)
+    gc.collect()
+    assert len(captured) == 9
+    assert sum(known() is not None for known in captured) == 0
+    again = source.cleaned(source.names[2:], lambda f, w: None)
+    assert len(captured) == 18
+    for a, b in zip(first, again, strict=True):
+        np.testing.assert_array_equal(a.capture.positions_mm, b.capture.positions_mm)
+
+
+def test_a_corpus_that_changes_on_the_way_is_refused(corpus):
+    raw = read_corpus(corpus, keep_sound=False)
+    fewer = replace(raw, captures=raw.captures[1:], utterances=raw.utterances[1:])
+    given = iter([raw, fewer])
+    source = _Cleaned(lambda: next(given))
+    source.cleaned(source.names, lambda f, w: None)
+    with pytest.raises(InputError, match="8 recordings are usable and 9 were at the start"):
+        source.cleaned(source.names, lambda f, w: None)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from dataclasses import replace
 from typing import ClassVar
 
@@ -159,6 +160,29 @@ def test_natural_speech_is_looked_at_where_methods_join():
         assert ("mean", "join_peak") not in values
     silent = tabulate(evaluate(Cleaned(recordings), folds, [parse_variant("mean")])).values
     assert ("natural", "join_peak") not in silent
+
+
+class Fresh(Cleaned):
+    """Recordings made anew for every group; it sees how many of those before still stand in memory."""
+
+    def __init__(self, recordings):
+        super().__init__(recordings)
+        self.given, self.alive = [], []
+
+    def cleaned(self, learn_from, progress):
+        self.alive.append(sum(known() is not None for known in self.given))
+        captures = [replace(r.capture, positions_mm=r.capture.positions_mm + 0.0) for r in self.recordings]
+        self.given += [weakref.ref(c.positions_mm) for c in captures]
+        return [replace(r, capture=c) for r, c in zip(self.recordings, captures, strict=True)]
+
+
+def test_recordings_of_a_group_are_let_go_before_the_next_are_cleaned():
+    recordings = [replace(r, capture=face_only(r.capture)) for r in talk(8)]
+    source = Fresh(recordings)
+    methods = [parse_variant(m) for m in ("mean", "viterbi:mode=inertial")]
+    evaluate(source, k_folds([r.name for r in recordings], 3), methods)
+    assert len(source.given) == 24
+    assert source.alive == [0, 0, 0]
 
 
 @given(st.integers(0, 1000))
