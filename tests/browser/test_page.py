@@ -250,6 +250,25 @@ def test_two_settings_are_compared_and_the_history_goes_back(browser_page, serve
     until(browser_page, lambda: session.weighting == "linear")
 
 
+def test_inertial_joins_offer_their_duration_in_place_of_g_of_u(browser_page, served):
+    session = drawn(browser_page, served)
+    slider = browser_page.get_by_role("slider", name=re.compile("Inertial duration"))
+    overlap = browser_page.get_by_role("slider", name=re.compile("Longest overlap"))
+    overlap.wait_for()
+    browser_page.get_by_role("button", name="Inertial").click()
+    slider.wait_for()
+    overlap.wait_for(state="hidden")
+    assert browser_page.get_by_role("button", name="Linear").is_disabled()
+    browser_page.keyboard.press("1")
+    browser_page.keyboard.press("w")
+    browser_page.keyboard.press("ArrowLeft")
+    until(browser_page, lambda: session.inertial_s == 0.115)
+    assert session.weighting == "smootherstep"
+    assert (
+        browser_page.locator(".slot.presets").get_attribute("title").startswith("Inertial joins use no g(u)")
+    )
+
+
 def transport(tab):
     return tab.locator(".vsw-transport").first
 

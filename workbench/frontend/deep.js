@@ -15,9 +15,9 @@ export function deepFind(node, test) {
   return null;
 }
 
-/** Give the focus to the slider of the longest overlap, so that the arrow keys change it. */
+/** Give the focus to the slider of the longest overlap, or of the duration that stands in its place, so that the arrow keys change it. */
 export function focusOverlap(root) {
   const place = deepFind(root, (e) => e.classList.contains("sliders"));
-  const slider = place && deepFind(place, (e) => e.tagName === "INPUT" && e.type === "range");
+  const slider = place && deepFind(place, (e) => e.tagName === "INPUT" && e.type === "range" && e.checkVisibility());
   slider?.focus();
 }

@@ -4,7 +4,7 @@
  */
 import { fitText } from "./lane_axes.js";
 
-const MOST = 2.4;
+const LEAST_RANGE = 2.4;
 const LONGEST_S = 0.3;
 
 function line(ctx, x0, y0, x1, y1) {
@@ -26,7 +26,14 @@ export function ratioAt(overlaps, ratios, overlap) {
   return ratios.at(-1);
 }
 
-function drawGround(ctx, [x0, y0, x1, y1], toX, toY, axis, p) {
+/** Highest value of the axis: room for every point, and for a name above the highest; curves may leave it. */
+export function rangeOf({ overlaps, curves, now, other }) {
+  const points = now ? curves.map((c) => ratioAt(overlaps, c.ratios, now.overlap)) : [];
+  const values = [...points, now?.ratio, other?.ratio].filter(Number.isFinite);
+  return Math.max(LEAST_RANGE, 1.15 * Math.max(0, ...values));
+}
+
+function drawGround(ctx, [x0, y0, x1, y1], toX, toY, most, axis, p) {
   ctx.fillStyle = p.sunk;
   ctx.fillRect(x0, y0, x1 - x0, y1 - y0);
   ctx.save();
@@ -39,7 +46,8 @@ function drawGround(ctx, [x0, y0, x1, y1], toX, toY, axis, p) {
   ctx.font = `400 10px ${p.family}`;
   ctx.fillStyle = p.ink2;
   ctx.textAlign = "right";
-  for (const v of [0, 1, 2]) ctx.fillText(String(v), x0 - 6, toY(v) + 3);
+  const every = Math.max(1, Math.round(most / 4));
+  for (let v = 0; v < most; v += every) ctx.fillText(String(v), x0 - 6, toY(v) + 3);
   ctx.textAlign = "center";
   for (const ms of [0, 100, 200, 300]) {
     const x = Math.round(toX(ms / 1000)) + 0.5;
@@ -78,8 +86,9 @@ function drawNamed(ctx, box, x, y, text, colour, p, above, clear = 0) {
 export function drawEffect(ctx, box, data, p) {
   const [x0, y0, x1, y1] = box;
   const toX = (s) => x0 + (s / LONGEST_S) * (x1 - x0);
-  const toY = (v) => y1 - (Math.min(v, MOST) / MOST) * (y1 - y0);
-  drawGround(ctx, box, toX, toY, data.axis, p);
+  const most = rangeOf(data);
+  const toY = (v) => y1 - (v / most) * (y1 - y0);
+  drawGround(ctx, box, toX, toY, most, data.axis, p);
   const { now, other } = data;
   if (!now) {
     if (!data.known) return;
@@ -97,10 +106,15 @@ export function drawEffect(ctx, box, data, p) {
     ctx.setLineDash([]);
     ctx.lineWidth = 1;
   };
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(x0, y0, x1 - x0, y1 - y0);
+  ctx.clip();
   for (const c of data.curves) drawLine(c, p.nat, 1, [1.5, 3]);
   const named = (name) => data.curves.find((c) => c.name === name);
   if (other?.alike && named(other.name)) drawLine(named(other.name), p.other, 1.6, [5, 4]);
   if (named(now.name) && !now.moved) drawLine(named(now.name), p.acc, 2.4, []);
+  ctx.restore();
   for (const c of data.curves) {
     const ratio = ratioAt(data.overlaps, c.ratios, now.overlap);
     if (Number.isFinite(ratio)) drawPoint(ctx, toX(now.overlap), toY(ratio), 3, p.nat);

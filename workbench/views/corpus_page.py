@@ -120,7 +120,9 @@ def _advice(facts: CorpusFacts) -> str:
         )
     offset = facts.health.get("closure_offset_s")
     if offset is not None:
-        items += f"<li>Lips close best with the motion moved by {1000 * offset:+.0f} ms (0 is right).</li>"
+        items += (
+            f"<li>Lips close best with the motion moved by {round(1000 * offset):+d} ms (0 is right).</li>"
+        )
     return f'<ul class="advice">{items}</ul>' if items else ""
 
 

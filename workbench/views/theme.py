@@ -70,6 +70,8 @@ def _components(c: Any, sizes: Any, size: int) -> dict[str, Any]:
     flat = {"boxShadow": "none", "&:hover": {"boxShadow": "none"}}
     focus = {"&.Mui-focusVisible": {"outline": f"2px solid {c['acc']}", "outlineOffset": "1px"}}
     text = {"fontSize": f"{size}px", "lineHeight": "16px"}
+    place = {"transform": "translate(10px, 6px) scale(1)"}  # of a field as low as these
+    inside = {"&.MuiInputLabel-outlined:not(.MuiInputLabel-shrink)": place}
     outline = {"& .MuiOutlinedInput-notchedOutline": {"borderColor": c["line"]}}
     return {
         "MuiButtonBase": {"defaultProps": {"disableRipple": True}, "styleOverrides": {"root": focus}},
@@ -115,11 +117,12 @@ def _components(c: Any, sizes: Any, size: int) -> dict[str, Any]:
             "styleOverrides": {"root": {"border": f"1px solid {c['line']}", "backgroundImage": "none"}},
         },
         "MuiFormLabel": {"styleOverrides": {"root": {**text, "color": c["ink2"]}}},
-        "MuiInputLabel": {"styleOverrides": {"root": {**text, "color": c["ink2"]}}},
+        "MuiInputLabel": {"styleOverrides": {"root": {**text, "color": c["ink2"], **inside}}},
         "MuiInputBase": {"styleOverrides": {"root": {**text}, "input": {"height": "16px"}}},
         "MuiOutlinedInput": {"styleOverrides": {"root": outline, "input": {"padding": "6px 8px"}}},
         "MuiMenuItem": {"styleOverrides": {"root": {**text, "minHeight": "24px", "padding": "2px 10px"}}},
         "MuiAutocomplete": {"styleOverrides": {"option": {**text}, "inputRoot": {"padding": "0 8px"}}},
+        "MuiTooltip": {"styleOverrides": {"tooltip": {"whiteSpace": "nowrap", "maxWidth": "none"}}},
         "MuiSlider": {
             "styleOverrides": {
                 "root": {"padding": "9px 0", "height": "3px"},

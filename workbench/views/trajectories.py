@@ -171,9 +171,10 @@ class Trajectories(pn.viewable.Viewer):
                 overlay.opts(
                     hv.opts.Overlay(
                         responsive=True,
-                        height=118 if last else 84,
+                        height=102 if last else 84,
                         xaxis="bottom" if last else None,
-                        xlabel="time, s",
+                        xlabel="",
+                        xformatter="%g s",
                         ylabel=f"{signal.label}, {'mm/s' if speed else 'mm'}",
                         yticks=4,
                         show_legend=False,
