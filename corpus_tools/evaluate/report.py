@@ -17,7 +17,7 @@ __all__ = ["report_html"]
 
 _STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;color:#1c2127;background:#fff}
-body{margin:2rem auto;max-width:1180px;padding:0 1rem}
+body{margin:2rem auto;max-width:1500px;padding:0 1.5rem}
 h1{font-size:1.5rem;margin-bottom:.2rem}h2{font-size:1.15rem;margin-top:2.2rem}p{max-width:50rem}
 table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}
 th,td{padding:.25rem .6rem;text-align:right;border-bottom:1px solid #dde2e7;white-space:nowrap}
