@@ -122,15 +122,16 @@ def ranked_joins(trajectory: Trajectory, natural: NaturalDistribution) -> tuple[
     Returns
     -------
     tuple of Join
-        `natural_percentile`, 0 to 100, and `peak_ratio`, the peak over the natural 95th percentile.
+        `natural_percentile`, 0 to 100, and `peak_ratio`, the peak over the natural 95th percentile; NaN when
+        that is unknown or nothing moves in it.
     """
     values = np.asarray(trajectory.values_mm)[:, natural.columns]
     acceleration = rms_acceleration(values, trajectory.rate_hz)
-    found = []
+    found, p95 = [], natural.p95_mm_s2
     for join in trajectory.joins:
         near = np.abs(trajectory.times_s - join.time_s) <= 0.5 * WINDOW_S
         peak = float(acceleration[near].max())
-        ratio = peak / natural.p95_mm_s2
+        ratio = peak / p95 if p95 > 0 else float("nan")
         found.append(replace(join, natural_percentile=natural.percentile(peak), peak_ratio=ratio))
     return tuple(found)
 

@@ -132,6 +132,10 @@ def test_a_join_is_placed_by_its_peak_among_natural_ones():
         align_fragments(*joined(still, parabola(6.0, 0, 0, 1.0)), names=NAMES), natural=natural
     )
     assert placed.joins[0].natural_percentile == pytest.approx(50, abs=1)
+    assert placed.joins[0].peak_ratio == pytest.approx(peak / np.percentile(ladder, 95))
+    for nothing in (np.zeros(5), np.zeros(0)):
+        unknown = ranked_joins(rough, dataclasses.replace(natural, peaks_mm_s2=nothing))
+        assert np.isnan(unknown[0].peak_ratio)
     unmoved = dataclasses.replace(natural, columns=np.array([1]))
     assert [j.natural_percentile for j in ranked_joins(rough, unmoved)] == [pytest.approx(50, abs=1)]
 

@@ -153,8 +153,8 @@ def test_one_call_is_the_two_calls(seed):
         fraction=0.7,
     )
     np.testing.assert_array_equal(one.values_mm, two.values_mm)
-    assert [replace(j, natural_percentile=0) for j in one.joins] == [
-        replace(j, natural_percentile=0) for j in two.joins
+    assert [replace(j, natural_percentile=0, peak_ratio=0) for j in one.joins] == [
+        replace(j, natural_percentile=0, peak_ratio=0) for j in two.joins
     ]
     assert one.history == two.history
     assert [s.name for s in one.history] == ["align", "blend"]
