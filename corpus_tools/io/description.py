@@ -222,7 +222,10 @@ def read_description(folder: str | Path) -> CorpusDescription:
     """
     place = Path(folder)
     if os.path.isfile(place):  # noqa: PTH113 - False also for names that no file system takes
-        raise CorpusError(f"'{place}' is a file, no corpus folder; give the folder that holds {CORPUS_FILE}.")
+        raise CorpusError(
+            f"'{place}' is a file, no corpus folder; give the folder that holds "
+            f"{CORPUS_FILE}, as 'corpus-tools init' makes it."
+        )
     if not os.path.isdir(place):  # noqa: PTH112 - as above
         raise CorpusError(
             f"There is no corpus folder '{place}'; 'corpus-tools init' makes one over recordings."

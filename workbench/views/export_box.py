@@ -36,7 +36,7 @@ def export_html(kind: str, text: str, where: str = "") -> str:
         said = notice_html("err", "The config was not written", why=text)
         return f'<div class="export">{close}{said}</div>'
     line, place = html.escape(text), html.escape(where)
-    rows = min(6, 2 + len(text) // 34)
+    rows = min(14, 2 + len(text) // 30)
     return (
         f'<div class="export">{close}<p class="ok" role="status" title="{place}">'
         f"✓ Config written: {place}</p>"

@@ -44,6 +44,7 @@ def details(**changes):
         join={
             "time": 0.7,
             "overlap": 0.12,
+            "inertial": 0.0,
             "phone": "EY",
             "gap": 1.5,
             "percentile": 97.0,
