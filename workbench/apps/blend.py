@@ -97,7 +97,7 @@ class BlendPage:
             on_corpus=lambda: self.show("corpus"),
             on_speak=lambda: self._gate.asked(self._speak_text),
         )
-        self._to_play: tuple[str, str] | None = None
+        self._plays_next = False
         self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
         self.board = BlendBoard(self.session, self.controls, clock, self.desk.cancel)
         self.desk.after_head = AfterPainted(self.board.face.mesh_view.line, self._gate)
@@ -170,7 +170,7 @@ class BlendPage:
         if result is not None and request is not None and result.request.same_target(request):
             self.transport.play()
         else:
-            self._to_play = self.session.target
+            self._plays_next = True
 
     def _speak(self, recording: str) -> None:
         self.session.param.update(target_kind="recording", sentence=recording)
@@ -232,8 +232,7 @@ class BlendPage:
         if result is None:
             self.transport.load_sound(None, 0.0)
         elif old is None or not old.request.same_target(result.request):
-            wanted, self._to_play = self._to_play, None
-            plays = wanted == self.session.target
+            plays, self._plays_next = self._plays_next and bool(result.request.text), False
             self.transport.load(result.utterance, result.request.corpus.phones, plays)
 
     def _hear(self, option: int | None) -> None:

@@ -110,7 +110,11 @@ class AppBar(pn.viewable.Viewer):
             self._session.text = text
 
     def _entered(self) -> None:
-        self._typed((self.text.value_input or "").strip())  # Enter is told before the value
+        entered = (
+            self.text.value_input or ""
+        ).strip()  # Enter is told before the value, at times before both
+        if entered:
+            self._typed(entered)
         self._on_speak()
 
     def _kind(self, *events: Any) -> None:

@@ -36,7 +36,8 @@ class Controls:
         """Return ``kind(**values)`` in the theme."""
         dark = self._session.theme == "dark"
         control = kind(theme_config=control_theme(), dark_theme=dark, **values)
-        control._priority_changes = ["value"]  # Panel would wait 50 ms for more: the newest wins here anyway
+        # Panel would wait 50 ms for more changes; here the newest wins anyway
+        control._priority_changes = ["value", "value_input"]
         self._made.append(control)
         return control
 
