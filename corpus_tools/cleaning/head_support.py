@@ -56,7 +56,7 @@ def supporting_columns(
     n_markers = len(captures[0].names)
     square, count, frames, seen = np.zeros(n_markers), np.zeros(n_markers), 0, np.zeros(n_markers)
     for capture in captures:
-        whole = np.isfinite(np.asarray(capture.positions_mm)).all(axis=2)
+        whole = np.asarray(np.isfinite(np.asarray(capture.positions_mm)).all(axis=2))
         seen += whole.sum(axis=0)
         frames += len(whole)
         spread, n = _within(capture, reference_mm, columns, allow_scale, cutoff_mm)
@@ -84,7 +84,7 @@ def _within(
     places = np.linspace(0, len(every) - 1, min(len(every), REFERENCE_FRAMES)).round()
     some = every[places.astype(np.int64)]
     positions = np.asarray(still.positions_mm)[some]
-    here = np.isfinite(positions).all(axis=2)
+    here = np.asarray(np.isfinite(positions).all(axis=2))
     known = np.where(here[..., None], positions, 0.0)
     n = here.sum(axis=0).astype(np.float64)
     mean = known.sum(axis=0) / np.maximum(n, 1.0)[:, None]

@@ -167,7 +167,7 @@ def estimated_smooth(
     """
     base, base_sd = kalman_smooth(capture, cutoff_hz)
     raw = np.asarray(capture.positions_mm)
-    seen = np.isfinite(raw).all(axis=2)
+    seen = np.asarray(np.isfinite(raw).all(axis=2))
     positions, sd_mm = np.array(base.positions_mm), np.array(base_sd)
     if by_components:
         whole = np.where(seen[..., None], raw, positions).reshape(len(raw), -1)

@@ -94,7 +94,7 @@ def _wanted(captures: Sequence[Capture]) -> dict[tuple[int, bool], list[int]]:
     """Return for each length class, with and without others, the markers that have such gaps."""
     found: dict[tuple[int, bool], list[int]] = {}
     for capture in captures:
-        seen = np.isfinite(capture.positions_mm).all(axis=2)
+        seen = np.asarray(np.isfinite(capture.positions_mm).all(axis=2))
         for marker in np.flatnonzero(~seen.all(axis=0) & seen.any(axis=0)):
             for a, b in frame_ranges(~seen[:, marker]):
                 others = int(seen[a : b + 1].all(axis=0).sum()) >= LEAST_OTHERS

@@ -67,7 +67,7 @@ class Metric:
 
     def sentences(self, shares: FloatArray) -> int:
         """Return of how many sentences shares (n_sentences, k) tell anything."""
-        known = np.isfinite(shares).all(axis=1)
+        known = np.asarray(np.isfinite(shares).all(axis=1))
         if self.per is not None:
             known &= shares[:, self.per] > 0
         return int(known.sum())
@@ -88,7 +88,7 @@ def quotient(
     shares: FloatArray, counts: FloatArray, groups: IntArray, naturals: Sequence[Natural]
 ) -> FloatArray:
     """Return the sum of the first numbers over the sum of the second."""
-    known = np.isfinite(shares).all(axis=1)
+    known = np.asarray(np.isfinite(shares).all(axis=1))
     sums = counts @ np.where(known[:, None], shares, 0.0)
     return _divided(sums[:, 0], sums[:, 1])
 

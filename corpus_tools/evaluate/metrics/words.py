@@ -30,7 +30,8 @@ def _pearson(
     shares: FloatArray, counts: FloatArray, groups: IntArray, naturals: Sequence[Natural]
 ) -> FloatArray:
     """Return Pearson's r of pooled frames from (n, sum x, sum y, sum x x, sum y y, sum x y)."""
-    sums = counts @ np.where(np.isfinite(shares).all(axis=1)[:, None], shares, 0.0)
+    known = np.asarray(np.isfinite(shares).all(axis=1))
+    sums = counts @ np.where(known[:, None], shares, 0.0)
     n, x, y, xx, yy, xy = sums.T
     n = np.maximum(n, 1.0)
     above = xy / n - x / n * y / n
