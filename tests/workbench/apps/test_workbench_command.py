@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+import urllib.request
 
 import pytest
 from bokeh.server.views.ws import WSHandler
@@ -44,15 +45,30 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, word):
     assert not done.stdout  # it does not say that it serves, and then that it cannot
 
 
+def wait_for_page(port, timeout_s=60.0):
+    until = time.monotonic() + timeout_s
+    while True:
+        try:
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/static/js/bokeh.min.js", timeout=5).close()
+            return
+        except OSError:
+            assert time.monotonic() < until, "the server does not answer"
+            time.sleep(0.05)
+
+
 def test_it_stops_when_it_is_told_to_and_says_so():
     code = "from workbench.apps.main import run; run()"
-    command = [sys.executable, "-c", code, "--no-browser", "--port", str(free_port())]
+    port = free_port()
+    command = [sys.executable, "-c", code, "--no-browser", "--port", str(port)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as server:
-        assert server.stdout is not None
-        assert "is at" in server.stdout.readline()
-        time.sleep(0.1)
-        server.terminate()
-        out, err = server.communicate(timeout=60)
+        try:
+            assert server.stdout is not None
+            assert "is at" in server.stdout.readline()
+            wait_for_page(port)
+            server.terminate()
+            out, err = server.communicate(timeout=60)
+        finally:
+            server.kill()  # a test that has failed waits for nobody
     assert server.returncode == 0
     assert "stopped" in out
     assert "Traceback" not in err
