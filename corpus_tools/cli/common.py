@@ -153,6 +153,13 @@ def _of_the_surroundings(error: OSError) -> str:
     return f"Error: {what}: {error.strerror}; check the path, the permissions and the space on the disk."
 
 
+def _forget_output() -> None:
+    """Let go of what could not be written: the interpreter would try it again at its end, and say so."""
+    if sys.stdout is not None and sys.stdout is sys.__stdout__:
+        with contextlib.suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def guarded(command: Callable[[], Any]) -> int:
     """Run `command` and turn what it raises into an exit code and a sentence on stderr.
 
@@ -183,6 +190,7 @@ def guarded(command: Callable[[], Any]) -> int:
         return EXIT_INPUT
     except Exception as error:
         if isinstance(error, OSError) and error.errno in _SURROUNDINGS:
+            _forget_output()
             _line(_of_the_surroundings(error))
             return EXIT_INPUT
         if os.environ.get("CORPUS_TOOLS_DEBUG"):
