@@ -155,9 +155,10 @@ def _of_the_surroundings(error: OSError) -> str:
 
 def _forget_output() -> None:
     """Let go of what could not be written: the interpreter would try it again at its end, and say so."""
-    if sys.stdout is not None and sys.stdout is sys.__stdout__:
+    stdout = sys.__stdout__
+    if stdout is not None and sys.stdout is stdout:
         with contextlib.suppress(OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stdout.fileno())
 
 
 def guarded(command: Callable[[], Any]) -> int:
