@@ -7,7 +7,9 @@ from html import escape
 from math import ceil
 from typing import Any
 
-__all__ = ["cleaning_page"]
+from corpus_tools.core import counted
+
+__all__ = ["cleaning_page", "found_in"]
 
 MOST_PICTURES = 12
 """Recordings that are drawn, the worst ones (our choice: a page is read; all numbers are in the table)."""
@@ -139,12 +141,19 @@ def _timing(report: dict[str, Any]) -> str:
     )
 
 
+def found_in(s: dict[str, Any]) -> str:
+    """Return what the summary of a report counts, for people."""
+    return (
+        f"{counted(s['gaps'], 'gap')}, {counted(s['filled_samples'], 'sample')} filled, "
+        f"{s['doubtful_samples']} doubtful; {counted(s['spikes'], 'spike')}, "
+        f"{counted(s['swaps'], 'exchanged pair')}, {counted(s['slips'], 'slip')}"
+    )
+
+
 def _lead(s: dict[str, Any]) -> str:
     return (
-        f"{s['recordings']} recordings, {s['frames']} frames. {s['gaps']} gaps; {s['filled_samples']} "
-        f"samples filled, {s['doubtful_samples']} doubtful; {s['spikes']} spikes, {s['swaps']} "
-        f"exchanged pairs, {s['slips']} slips. Residual of the head fit "
-        f"{s['head_residual_median_mm']:.2f} mm (median)."
+        f"{counted(s['recordings'], 'recording')}, {counted(s['frames'], 'frame')}: {found_in(s)}. "
+        f"Residual of the head fit {s['head_residual_median_mm']:.2f} mm (median)."
     )
 
 

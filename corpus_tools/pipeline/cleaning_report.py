@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from corpus_tools.cleaning import CleanedCorpus, HeadMotion, marker_gaps, measurement_sd_mm
-from corpus_tools.core import Capture, FrameFlag, atomic_folder
-from corpus_tools.pipeline.cleaning_page import cleaning_page
+from corpus_tools.core import Capture, FrameFlag, atomic_folder, counted
+from corpus_tools.pipeline.cleaning_page import cleaning_page, found_in
+from corpus_tools.pipeline.lacking import offset_advice
 from corpus_tools.pipeline.reading import Progress, RawCorpus, silent
 from corpus_tools.speech import closure_offset
 
@@ -117,7 +118,7 @@ def cleaning_report(raw: RawCorpus, cleaned: CleanedCorpus, progress: Progress =
         },
         "audio_offset_s": None if offset is None else _round(round(offset, 3) + 0.0),
         "audio_offset_applied_s": raw.description.audio_offset_s,
-        "advice": _advice(raw, offset),
+        "advice": offset_advice(raw.description, offset, raw.captures[0].rate_hz),
         "skipped": raw.skipped,
         "recordings": rows,
     }
@@ -127,20 +128,11 @@ def _badness(row: dict[str, Any]) -> float:
     return float(row["doubtful_samples"] + row["spikes"] + 100 * (len(row["swaps"]) + len(row["slips"])))
 
 
-def _advice(raw: RawCorpus, offset: float | None) -> list[str]:
-    frame_s = 1.0 / raw.captures[0].rate_hz
-    if offset is None or abs(offset) < max(0.35 * frame_s, 0.005):
-        return []
-    return [f"audio_offset_s = {raw.description.audio_offset_s + offset:.3f}"]
-
-
 def cleaning_lines(report: dict[str, Any]) -> list[str]:
     """Return a report as lines for people."""
     s, offset = report["summary"], report["audio_offset_s"]
     lines = [
-        f"{report['corpus']}: {s['recordings']} recordings; {s['gaps']} gaps, {s['filled_samples']} samples "
-        f"filled, {s['doubtful_samples']} doubtful; {s['spikes']} spikes, {s['swaps']} exchanged pairs, "
-        f"{s['slips']} slips.",
+        f"{report['corpus']}: {counted(s['recordings'], 'recording')}; {found_in(s)}.",
         f"Head: residual {s['head_residual_median_mm']:.2f} mm (median), scale spread "
         f"{100 * (s['head_scale_sd'] or 0):.2f} %.",
     ]

@@ -22,7 +22,7 @@ from corpus_tools.io import (
     read_description,
     reading_notes,
 )
-from corpus_tools.pipeline.lacking import axes_advice, what_is_lacking, what_is_left_out
+from corpus_tools.pipeline.lacking import axes_advice, offset_advice, what_is_lacking, what_is_left_out
 from corpus_tools.pipeline.reading import Progress, reference_columns, silent
 from corpus_tools.pipeline.usable import in_order_of, motion_problem, seen_markers, usual_markers
 from corpus_tools.speech import PhoneSet, closure_offset, phone_set, recorded_utterance
@@ -32,10 +32,6 @@ __all__ = ["check_corpus", "health_lines"]
 SCALE_SD_LIMIT = 0.01
 """Spread of the head scale above which a similarity fit is advised (our choice: GRID has 0.025, optical
 capture stays below 0.003)."""
-
-OFFSET_LIMIT_FRAMES, OFFSET_LIMIT_S = 0.35, 0.005
-"""Closure offset from which a change is advised; both must be reached (our choice: frames that are taken for
-their start but stand for their middle come half a frame early; the offset itself is found to some ms)."""
 
 
 @dataclass(slots=True)
@@ -170,11 +166,7 @@ def _advice(
     lines: list[str] = []
     if scale_sd > SCALE_SD_LIMIT and not description.head_scale:
         lines.append("head_scale = true")
-    frame_s = 1.0 / captures[0].rate_hz
-    if offset is not None and abs(offset) >= max(OFFSET_LIMIT_FRAMES * frame_s, OFFSET_LIMIT_S):
-        half = description.frame_time == "start" and abs(offset - 0.5 * frame_s) < 0.25 * frame_s
-        value = description.audio_offset_s + offset
-        lines.append('frame_time = "centre"' if half else f"audio_offset_s = {value:.3f}")
+    lines += offset_advice(description, offset, captures[0].rate_hz)
     return {
         "head_scale_sd": round(scale_sd, 5),
         "posture_offsets": _postures(description, usable, cleaned, phones.silence),

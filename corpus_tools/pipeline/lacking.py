@@ -1,4 +1,4 @@
-"""What a corpus lacks, and what can be done without: for the report of ``corpus-tools check``."""
+"""What a corpus lacks, what can be done without, and which lines of corpus.toml would mend it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ from corpus_tools.core import Capture, CorpusError, counted
 from corpus_tools.core.errors import suggestion
 from corpus_tools.io import CorpusDescription, parsed_axes
 
-__all__ = ["axes_advice", "what_is_lacking", "what_is_left_out"]
+__all__ = ["axes_advice", "offset_advice", "what_is_lacking", "what_is_left_out"]
+
+OFFSET_LIMIT_FRAMES, OFFSET_LIMIT_S = 0.35, 0.005
+"""Closure offset from which a change is advised; both must be reached (our choice: frames that are taken for
+their start but stand for their middle come half a frame early; the offset itself is found to some ms)."""
 
 _AS_THEY_ARE = "x,y,z"
 
@@ -28,6 +32,26 @@ def axes_advice(description: CorpusDescription, captures: Sequence[Capture]) -> 
             continue
         return [] if axes == _AS_THEY_ARE else [f'marker_axes = "{axes}"']
     return []
+
+
+def offset_advice(description: CorpusDescription, offset_s: float | None, rate_hz: float) -> list[str]:
+    """Return the line for corpus.toml that brings the closures to the bilabials, when one is needed.
+
+    Half a frame too early is what frames do that are taken for their start and stand for their middle.
+
+    Parameters
+    ----------
+    description : CorpusDescription
+    offset_s : float or None
+        From :func:`~corpus_tools.speech.closure_offset`, s.
+    rate_hz : float
+        Of the captures, Hz.
+    """
+    if offset_s is None or abs(offset_s) < max(OFFSET_LIMIT_FRAMES / rate_hz, OFFSET_LIMIT_S):
+        return []
+    if description.frame_time == "start" and abs(offset_s - 0.5 / rate_hz) < 0.25 / rate_hz:
+        return ['frame_time = "centre"']
+    return [f"audio_offset_s = {description.audio_offset_s + offset_s:.3f}"]
 
 
 def what_is_left_out(description: CorpusDescription, ids: Collection[str]) -> list[str]:

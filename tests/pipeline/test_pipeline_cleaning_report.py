@@ -70,6 +70,14 @@ def test_an_offset_is_shown_and_not_applied(cleaned, report):
     assert any("not applied" in text for text in cleaning_lines(shifted))
 
 
+def test_one_of_a_kind_is_told_in_the_singular(report):
+    ones = {key: 1 for key in ("recordings", "frames", "gaps", "filled_samples", "spikes", "swaps", "slips")}
+    summary = {**report["summary"], **ones}
+    (line, *_) = cleaning_lines({**report, "summary": summary})
+    assert "1 recording; 1 gap, 1 sample filled," in line
+    assert line.endswith("1 spike, 1 exchanged pair, 1 slip.")
+
+
 def test_the_page_opens_anywhere_and_equal_reports_give_equal_bytes(report, tmp_path):
     odd = {**report, "corpus": "<b>odd & named</b>"}
     for folder in ("one", "two"):

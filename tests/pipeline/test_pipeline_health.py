@@ -17,7 +17,7 @@ from corpus_tools.io import (
     write_textgrid,
     write_wav,
 )
-from corpus_tools.pipeline import check_corpus, health_lines
+from corpus_tools.pipeline import check_corpus, clean_corpus, cleaning_report, health_lines, read_corpus
 
 
 def changed(capture, **values):
@@ -228,6 +228,8 @@ def test_a_right_frame_time_needs_no_advice_and_a_wrong_one_is_set_right(video):
     wrong = check_corpus(video)
     assert wrong["closure_offset_s"] == pytest.approx(right["closure_offset_s"] + 0.5 / 24, abs=2e-3)
     assert wrong["advice"] == ['frame_time = "centre"']
+    raw = read_corpus(video)
+    assert cleaning_report(raw, clean_corpus(raw))["advice"] == wrong["advice"]
 
 
 @pytest.mark.parametrize("late_s", [-0.06, 0.07])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from corpus_tools.io import (
     MOTION_WRITERS,
+    CorpusDescription,
     find_recordings,
     init_corpus,
     load_capture,
@@ -16,6 +18,7 @@ from corpus_tools.io import (
     write_description,
 )
 from corpus_tools.pipeline import check_corpus, health_lines
+from corpus_tools.pipeline.lacking import offset_advice
 
 SUFFIX = {"npz": "npz", "c3d": "C3D", "trc": "trc", "csv": "csv", "csv-long": "csv"}
 NAMES = ["head0", "head1", "head2", "lip", "chin"]
@@ -41,6 +44,22 @@ def test_a_corpus_of_motion_alone_is_checked_and_told_what_it_can_do(tmp_path, f
     assert "nothing can be synthesised" in labels
     assert "silent" in sound
     assert labels in health_lines(report)
+
+
+@pytest.mark.parametrize(
+    ("frame_time", "frames", "line"),
+    [
+        ("start", 0.5, 'frame_time = "centre"'),
+        ("centre", 0.5, "audio_offset_s = 0.120"),
+        ("start", -0.5, "audio_offset_s = 0.080"),
+        ("start", 2.0, "audio_offset_s = 0.180"),
+    ],
+)
+def test_an_offset_of_half_a_frame_asks_for_the_centre_and_another_for_itself(frame_time, frames, line):
+    described = CorpusDescription(folder=Path("work"), motion="", frame_time=frame_time, audio_offset_s=0.1)
+    assert offset_advice(described, frames / 25, 25.0) == [line]
+    assert offset_advice(described, 0.0049, 250.0) == []
+    assert offset_advice(described, None, 25.0) == []
 
 
 def test_without_rigid_markers_a_corpus_that_is_only_read_is_told(tmp_path):
