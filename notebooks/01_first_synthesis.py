@@ -40,7 +40,7 @@ from corpus_tools.pipeline import (
     prepare_head,
     synthesise,
 )
-from workbench.views.face import head_camera
+from workbench.views.cameras import head_camera
 from workbench.views.head_actors import head_actors
 from workbench.views.mesh_view import MeshView
 from workbench.views.transport import Transport

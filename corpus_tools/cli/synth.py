@@ -123,7 +123,8 @@ def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus, lab
     )
     say(join_line(synthesis.trajectory.joins))
     missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
-    for sentence in stand_ins_told(missing, len(synthesis.utterance.labels) - 1):
+    most, sentences = stand_ins_told(missing, len(synthesis.utterance.labels) - 1)
+    for sentence in filter(None, (most, *sentences)):
         say(f"▲ {sentence}")
     for pin, ban in summary["banned_pins"]:
         say(f"▲ The pin '{pin}' speaks what the ban '{ban}' forbids; the pin holds: take one of them out.")

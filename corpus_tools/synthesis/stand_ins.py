@@ -57,17 +57,24 @@ def stand_ins(selection: Selection, utterance: Utterance, phones: PhoneClasses) 
     return tuple(found)
 
 
-def stand_ins_told(found: Sequence[StandIn], n_diphones: int) -> tuple[str, ...]:
-    """Return what a reader is told of stand-ins, each once; first how many, when it is most of the diphones.
+def stand_ins_told(found: Sequence[StandIn], n_diphones: int) -> tuple[str, tuple[str, ...]]:
+    """Return what a reader is told of stand-ins.
 
     Parameters
     ----------
     found : sequence of StandIn
     n_diphones : int
         Diphones of the utterance.
+
+    Returns
+    -------
+    summary : str
+        How many diphones have no unit, and which, when it is most of them; else empty.
+    sentences : tuple of str
+        What stood in for each, told once.
     """
-    told = tuple(dict.fromkeys(s.sentence for s in found))
+    sentences = tuple(dict.fromkeys(s.sentence for s in found))
     if 2 * len(found) <= n_diphones:
-        return told
+        return "", sentences
     names = ", ".join(dict.fromkeys("-".join(s.diphone) for s in found))
-    return (f"{len(found)} of {n_diphones} diphones have no unit: {names}", *told)
+    return f"{len(found)} of {n_diphones} diphones have no unit: {names}", sentences

@@ -19,7 +19,6 @@ import sys
 import tempfile
 import threading
 import time
-import urllib.request
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -28,7 +27,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from answering import wait_until_answers
 from browser import chromium
+
+from workbench.apps.serving import free_port
 
 MESH = """(() => {
   const walk = (root) => {
@@ -51,19 +53,6 @@ def summary(values_ms: Sequence[float]) -> dict[str, float]:
         "p95_ms": round(float(np.percentile(values_ms, 95)), 1),
         "n": len(values_ms),
     }
-
-
-def wait_for_server(url: str, timeout_s: float = 60.0) -> None:
-    """Wait until a server answers."""
-    until = time.monotonic() + timeout_s
-    while True:
-        try:
-            urllib.request.urlopen(f"{url}static/js/bokeh.min.js", timeout=5).close()
-            return
-        except OSError:
-            if time.monotonic() > until:
-                raise
-            time.sleep(0.05)
 
 
 def wait_drawn(tab: Any) -> float:
@@ -131,7 +120,7 @@ def measure_widget(browser: Any, deformer: str, n_changes: int = 25) -> dict[str
     import panel as pn
 
     from corpus_tools.mesh import DEFORMERS, bundled_head
-    from workbench.views.face import head_camera
+    from workbench.views.cameras import head_camera
     from workbench.views.head_actors import head_actors
     from workbench.views.mesh_view import MeshView
 
@@ -188,11 +177,11 @@ def measure_page(browser: Any, corpus: Path, n_steps: int = 24) -> dict[str, Any
 
     The server is a process of its own, as a person has it: here it would share an interpreter with the mouse.
     """
-    port = chromium.free_port()
+    port = free_port()
     command = [sys.executable, "-c", "from workbench.apps.main import run; run()"]
     server = subprocess.Popen([*command, str(corpus), "--no-browser", "--port", str(port)])
     try:
-        wait_for_server(f"http://127.0.0.1:{port}/")
+        wait_until_answers(f"http://127.0.0.1:{port}/static/js/bokeh.min.js")
         first = []
         for _ in range(2):  # the first tab also opens the corpus; the second finds the server warm
             tab = browser.new_page(viewport={"width": 1440, "height": 900})

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 import shutil
-import socket
-import time
-import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import panel as pn
+from answering import wait_until_answers
 from playwright.sync_api import BrowserContext, Page
+
+from workbench.apps.serving import free_port
 
 CANDIDATES = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = (
@@ -67,13 +67,6 @@ class Watch:
         return [f for f in self.faults if not any(words in f for words in self.expected)]
 
 
-def free_port() -> int:
-    """Return a port of this machine that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 def serve(make: Callable[[], Any], static: dict[str, Path] | None = None) -> tuple[str, Any]:
     """Serve what `make` builds for each session; return its address, once it answers, and its thread."""
     port = free_port()
@@ -88,12 +81,5 @@ def serve(make: Callable[[], Any], static: dict[str, Path] | None = None) -> tup
         static_dirs={name: str(folder) for name, folder in (static or {}).items()},
     )
     url = f"http://127.0.0.1:{port}/"
-    until = time.monotonic() + TIMEOUT_MS / 1000
-    while True:
-        try:
-            urllib.request.urlopen(f"{url}static/js/bokeh.min.js", timeout=5).close()
-            return url, server
-        except OSError:
-            if time.monotonic() > until:
-                raise
-            time.sleep(0.05)
+    wait_until_answers(f"{url}static/js/bokeh.min.js", TIMEOUT_MS / 1000)
+    return url, server

@@ -10,8 +10,9 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from browser import chromium as shared
 from browser.shown import FIND, FIND_ALL, wait_drawn
+
+from workbench.apps.serving import free_port
 
 pytestmark = pytest.mark.slow
 
@@ -110,7 +111,7 @@ def test_jupyterlab_offline_in_separate_cells(watched, tmp_path, project):
     settings = tmp_path / "lab"
     settings.mkdir()
     (settings / "overrides.json").write_text((project / ".ci/lab-overrides.json").read_text())
-    port = shared.free_port()
+    port = free_port()
     options = [
         "jupyterlab",
         "--no-browser",
@@ -151,7 +152,7 @@ def test_a_script_behind_panel_serve(watched, tmp_path):
     context, _ = watched
     context.set_default_timeout(60_000)
     (tmp_path / "head.py").write_text(SCRIPT)
-    port = shared.free_port()
+    port = free_port()
     options = ["panel", "serve", "head.py", "--port", str(port), "--address", "127.0.0.1"]
     options += ["--allow-websocket-origin", f"127.0.0.1:{port}"]
     process = start(options, tmp_path, f"http://127.0.0.1:{port}/static/js/bokeh.min.js")

@@ -12,7 +12,7 @@ from PIL import Image
 import workbench.views.stills as stills
 from corpus_tools.mesh import bind_bid, bundled_head, level_neck, neck_rim
 from corpus_tools.render import OffscreenStatus, probe_offscreen
-from workbench.views.face import head_camera
+from workbench.views.cameras import head_camera
 from workbench.views.head_actors import head_actors
 from workbench.views.mesh_view import MeshView
 from workbench.views.posed import PosedScene

@@ -2,9 +2,7 @@
 
 import json
 
-
-def last_json(out):
-    return json.loads(out.splitlines()[-1])
+from tests.cli.answers import last_json
 
 
 def test_clean_tells_and_writes_beside_the_corpus(tool, simulated_corpus, tmp_path):

@@ -19,7 +19,7 @@ function showRow(rows, row) {
 
 /** Put the text of a field on the clipboard and say so on the button; a page without leave to, selects it. */
 async function copyFrom(field, button) {
-  const before = button.textContent;
+  button.dataset.label ??= button.textContent; // a second click finds "Copied" there
   try {
     await navigator.clipboard.writeText(field.value);
     button.textContent = "Copied";
@@ -28,7 +28,7 @@ async function copyFrom(field, button) {
     field.select();
     button.textContent = document.execCommand("copy") ? "Copied" : "Press Ctrl C";
   }
-  setTimeout(() => (button.textContent = before), 1500);
+  setTimeout(() => (button.textContent = button.dataset.label), 1500);
 }
 
 /** Panel entry point. */

@@ -161,8 +161,8 @@ def band_data(effects: Effects | None) -> dict[str, bytes]:
     return dict(zip(("times", "low", "high"), map(_float32, effects.band), strict=True))
 
 
-def stand_ins(result: Result) -> tuple[str, ...]:
-    """Return what is told of the diphones that no unit has and of what stood in, as the command line does."""
+def stand_ins(result: Result) -> tuple[str, tuple[str, ...]]:
+    """Return what the command line tells of stand-ins too (:func:`corpus_tools.synthesis.stand_ins_told`)."""
     utterance = result.utterance
     found = synthesis.stand_ins(result.selection, utterance, result.request.corpus.phones)
     return stand_ins_told(found, len(utterance.labels) - 1)

@@ -31,9 +31,9 @@ def head_text(result: Result, cast: tuple[Result, ...] = ()) -> str:
 
 def missing_text(result: Result) -> str:
     """Return which diphones no unit has and what stood in, in one line; empty without any."""
-    told = stand_ins(result)
-    if len(told) > 1 and " diphones have no unit: " in told[0]:
-        return told[0]
+    most, told = stand_ins(result)
+    if most:
+        return most
     more = f" · and {len(told) - MOST_TOLD} more" if len(told) > MOST_TOLD else ""
     return f"{' · '.join(told[:MOST_TOLD])}{more}"
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from corpus_tools.core import Mesh
 
-__all__ = ["face_frame", "head_camera", "look_at"]
+__all__ = ["face_frame", "head_camera", "look_at", "skin_mm"]
 
 _VIEW_ANGLE_DEG = 20.0
 _AROUND_DEG = 22.0
@@ -18,13 +18,18 @@ _OVER, _BELOW = 0.02, 0.12
 """Ground above the skull and neck below the chin, as shares of the height between."""
 
 
+def skin_mm(mesh: Mesh) -> npt.NDArray[np.float64]:
+    """Return the vertices of the skin, (n, 3) mm; all of them when no part is called so."""
+    return mesh.vertices_mm[mesh.part_mask("skin")] if "skin" in mesh.part_names else mesh.vertices_mm
+
+
 def face_frame(mesh: Mesh) -> tuple[float, float, npt.NDArray[np.float64]]:
     """Return the lowest and highest y that a picture of a head shows, mm, and its middle.
 
     The top of the skull has some ground above it; below the chin there is neck as far as the picture goes, so
     that where a head ends is out of sight.
     """
-    skin = mesh.vertices_mm[mesh.part_mask("skin")] if "skin" in mesh.part_names else mesh.vertices_mm
+    skin = skin_mm(mesh)
     marked = mesh.vertices_mm[list(mesh.markers.values())] if mesh.markers else skin
     top, chin = float(skin[:, 1].max()), float(marked[:, 1].min())
     low, high = chin - _BELOW * (top - chin), top + _OVER * (top - chin)

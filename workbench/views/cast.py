@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from corpus_tools.core import FloatArray, Mesh
-from workbench.views.cameras import face_frame, look_at
+from workbench.views.cameras import face_frame, look_at, skin_mm
 
 __all__ = ["cast_camera", "cast_places", "cast_prefix"]
 
@@ -24,12 +24,8 @@ def cast_prefix(name: str) -> str:
     return f"{name}/"
 
 
-def _skin(mesh: Mesh) -> FloatArray:
-    return mesh.vertices_mm[mesh.part_mask("skin")] if "skin" in mesh.part_names else mesh.vertices_mm
-
-
 def _marked_centre(mesh: Mesh) -> FloatArray:
-    points = mesh.vertices_mm[list(mesh.markers.values())] if mesh.markers else _skin(mesh)
+    points = mesh.vertices_mm[list(mesh.markers.values())] if mesh.markers else skin_mm(mesh)
     return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
 
 
@@ -41,9 +37,9 @@ def cast_places(meshes: Sequence[Mesh]) -> list[FloatArray]:
     meshes : sequence of Mesh
         The first stays where it is; the others follow on its left, which is the right of the picture.
     """
-    first, places, edge = _marked_centre(meshes[0]), [np.eye(4)], float(_skin(meshes[0])[:, 0].max())
+    first, places, edge = _marked_centre(meshes[0]), [np.eye(4)], float(skin_mm(meshes[0])[:, 0].max())
     for mesh in meshes[1:]:
-        x = _skin(mesh)[:, 0]
+        x = skin_mm(mesh)[:, 0]
         matrix = np.eye(4)
         matrix[:3, 3] = first - _marked_centre(mesh)
         matrix[0, 3] = edge + _GAP_MM - float(x.min())
@@ -57,7 +53,7 @@ def cast_camera(meshes: Sequence[Mesh]) -> dict[str, Any]:
     frames = []
     for mesh, place in zip(meshes, cast_places(meshes), strict=True):
         low, high, centre = face_frame(mesh)
-        x = _skin(mesh)[:, 0] + place[0, 3]
+        x = skin_mm(mesh)[:, 0] + place[0, 3]
         frames.append((low + place[1, 3], high + place[1, 3], x.min(), x.max(), centre[2] + place[2, 3]))
     low, high, left, right, z = np.array(frames).T
     own = float(high.max() - low.min())

@@ -12,8 +12,9 @@ from corpus_tools.core import counted
 from workbench.state import CorpusFacts, RecordingRow, Session, recording_rows
 from workbench.views.action_html import ActionHtml
 from workbench.views.diphone_map import FEW, diphone_map_svg
+from workbench.views.theme import style_sheet
 
-__all__ = ["CorpusOverview", "overview_html"]
+__all__ = ["CorpusOverview", "checking_html", "overview_html"]
 
 LEAST = 5
 """Sentences named that the others cover least (our choice)."""
@@ -126,26 +127,37 @@ def _advice(facts: CorpusFacts) -> str:
     return f'<ul class="advice">{items}</ul>' if items else ""
 
 
+def _facts(session: Session) -> CorpusFacts | None:
+    """Return the facts of the open corpus, None before they are known."""
+    known = session.facts is not None and session.facts.corpus is session.corpus
+    return session.facts if known else None
+
+
+def checking_html(session: Session) -> str:
+    """Return how far the check of the open corpus is, or why there is none; empty when it is done."""
+    if session.corpus is None or _facts(session) is not None:
+        return ""
+    if session.check_trouble:
+        said = f'<p class="err">✕ It could not be checked: {html.escape(session.check_trouble)}</p>'
+    else:
+        said = f'<p role="status">Checking: {html.escape(session.check_doing or "reading")}…</p>'
+    return f'<div class="vsw-html">{said}</div>'
+
+
 def overview_html(session: Session) -> str:
     """Return what is known of the open corpus as HTML; every text is escaped; empty without a corpus."""
-    corpus = session.corpus
+    corpus, facts = session.corpus, _facts(session)
     if corpus is None:
         return ""
-    facts = session.facts if session.facts is not None and session.facts.corpus is corpus else None
-    said = ""
-    if facts is None and session.check_trouble:
-        said = f'<p class="err">✕ It could not be checked: {html.escape(session.check_trouble)}</p>'
-    elif facts is None:
-        said = f'<p role="status">Checking: {html.escape(session.check_doing or "reading")}…</p>'
     title = f"<h1>{html.escape(corpus.description.name)}</h1>"
     right = _diphones(facts) if facts else ""
     body = f'<div class="halves">{_recordings(recording_rows(corpus, facts))}{right}</div>'
     advice = _advice(facts) if facts else ""
-    return f'<div class="overview">{title}{_tallies(session, facts)}{said}{advice}{body}</div>'
+    return f'<div class="overview">{title}{_tallies(session, facts)}{advice}{body}</div>'
 
 
 class CorpusOverview(pn.viewable.Viewer):
-    """The overview of the open corpus.
+    """The overview of the open corpus, and above it how far its check is.
 
     Parameters
     ----------
@@ -158,12 +170,22 @@ class CorpusOverview(pn.viewable.Viewer):
         self._session = session
         super().__init__(**params)
         self.pane = ActionHtml(on_action=lambda action, value: on_speak(value))
-        session.param.watch(self._update, ["corpus", "facts", "check_doing", "check_trouble"])
+        self.checking = pn.pane.HTML(
+            stylesheets=[style_sheet()], sizing_mode="stretch_width", margin=(16, 24, 0, 24)
+        )
+        session.param.watch(self._update, ["corpus", "facts"])
+        session.param.watch(self._check, ["corpus", "facts", "check_doing", "check_trouble"])
         self._update()
+        self._check()
 
     def _update(self, *events: Any) -> None:
         self.pane.html = overview_html(self._session)
         self.pane.visible = self._session.corpus is not None
 
+    def _check(self, *events: Any) -> None:
+        """Say how far the check is, without writing the table anew."""
+        self.checking.object = checking_html(self._session)
+        self.checking.visible = bool(self.checking.object)
+
     def __panel__(self) -> Any:
-        return self.pane
+        return pn.Column(self.checking, self.pane, sizing_mode="stretch_width", margin=0)

@@ -17,7 +17,7 @@ from workbench.views.cast import cast_camera, cast_places, cast_prefix
 from workbench.views.head_actors import OVERLAYS, head_actors
 from workbench.views.mesh_view import MeshView
 
-__all__ = ["Face", "head_camera", "head_motion"]
+__all__ = ["Face", "head_motion"]
 
 # pyvista loads its names when they are first asked for, which two sessions must not do at once
 assert pyvista.plotting
@@ -108,7 +108,7 @@ class Face(pn.viewable.Viewer):
         own = [a for a in self.mesh_view.actors if "/" not in a["name"]]
         motion = head_motion(self.result, own)
         for other in self._cast:
-            if len(other.trajectory.times_s) == len(trajectory.times_s):  # else of another sentence: it rests
+            if other.request.same_target(self.result.request):  # else it rests
                 theirs = head_motion(other, self.mesh_view.actors, cast_prefix(other.head.mesh.name))
                 for what, values in theirs.items():
                     motion[what].update(values)

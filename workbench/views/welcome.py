@@ -142,6 +142,4 @@ class Welcome(pn.viewable.Viewer):
         self.back.visible = s.corpus is not None and not opening
 
     def __panel__(self) -> Any:
-        return pn.Column(
-            self.overview.pane, self._panel, sizing_mode="stretch_both", scroll="y-auto", margin=0
-        )
+        return pn.Column(self.overview, self._panel, sizing_mode="stretch_both", scroll="y-auto", margin=0)

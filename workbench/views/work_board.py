@@ -194,17 +194,19 @@ class BlendBoard(pn.viewable.Viewer):
     def _overlays(self) -> None:
         """Say what can be shown over this head: only patches have a surface to hang on."""
         can = {what: what == "markers" or self.face.has_surface for what in OVERLAYS}
-        self.board.overlays = [
-            {
-                "id": what,
-                "label": what.capitalize(),
-                "on": bool(getattr(self.face, f"show_{what}")) and can[what],
-                "can": can[what],
-            }
-            for what in OVERLAYS
-        ]
         several = {"id": "several", "label": "Several heads", "on": bool(self._session.beside), "can": True}
-        self.board.overlays = [*self.board.overlays, several]
+        self.board.overlays = [
+            *(
+                {
+                    "id": what,
+                    "label": what.capitalize(),
+                    "on": bool(getattr(self.face, f"show_{what}")) and can[what],
+                    "can": can[what],
+                }
+                for what in OVERLAYS
+            ),
+            several,
+        ]
 
     def switch_view(self) -> None:
         """Show the trajectories instead of the lane, or the lane again."""

@@ -6,7 +6,15 @@ import pytest
 
 from corpus_tools.config import load_config
 from corpus_tools.core import InputError, OutputError
-from workbench.actions import export_config, export_stem, inside_root, replay_command, suggested_path
+from workbench.actions import (
+    cache_folder,
+    export_config,
+    export_stem,
+    exports_beside,
+    inside_root,
+    replay_command,
+    suggested_path,
+)
 from workbench.state import Session
 
 
@@ -70,6 +78,18 @@ def test_the_command_works_from_any_folder(tmp_path, monkeypatch):
     parts = shlex.split(replay_command(Session(folder="a corpus", sentence="s"), "c.toml"))
     assert parts[2] == str(tmp_path / "a corpus")
     assert parts[parts.index("--config") + 1] == str(tmp_path / "c.toml")
+
+
+def test_exports_go_beside_the_corpus_unless_that_is_in_the_cache(tmp_path, monkeypatch):
+    assert exports_beside(tmp_path / "corpus") == tmp_path.resolve() / "corpus" / "exports"
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    kept = exports_beside(cache_folder() / "demo")
+    assert kept.is_relative_to(tmp_path / "data")
+    assert kept.name == "exports"
+    # a link into the cache leads there too
+    cache_folder().mkdir(parents=True, exist_ok=True)
+    (tmp_path / "link").symlink_to(cache_folder())
+    assert exports_beside(tmp_path / "link" / "demo") == kept
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,9 @@ import socket
 import subprocess
 import sys
 import threading
-import time
-import urllib.request
 
 import pytest
+from answering import wait_until_answers
 from bokeh.server.views.ws import WSHandler
 from tornado.websocket import WebSocketClosedError
 
@@ -45,17 +44,6 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, word):
     assert not done.stdout  # it does not say that it serves, and then that it cannot
 
 
-def wait_for_page(port, timeout_s=60.0):
-    until = time.monotonic() + timeout_s
-    while True:
-        try:
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/static/js/bokeh.min.js", timeout=5).close()
-            return
-        except OSError:
-            assert time.monotonic() < until, "the server does not answer"
-            time.sleep(0.05)
-
-
 def test_it_stops_when_it_is_told_to_and_says_so():
     code = "from workbench.apps.main import run; run()"
     port = free_port()
@@ -64,7 +52,7 @@ def test_it_stops_when_it_is_told_to_and_says_so():
         try:
             assert server.stdout is not None
             assert "is at" in server.stdout.readline()
-            wait_for_page(port)
+            wait_until_answers(f"http://127.0.0.1:{port}/static/js/bokeh.min.js")
             server.terminate()
             out, err = server.communicate(timeout=60)
         finally:

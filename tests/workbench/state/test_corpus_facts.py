@@ -4,7 +4,7 @@ import re
 
 from corpus_tools.pipeline import check_corpus
 from workbench.state import Session, corpus_facts, recording_rows
-from workbench.views.corpus_page import overview_html
+from workbench.views.corpus_page import CorpusOverview, checking_html, overview_html
 from workbench.views.diphone_map import diphone_map_svg
 
 
@@ -35,14 +35,29 @@ def test_the_page_shows_tallies_rows_and_every_diphone(opened):
     session = Session()
     assert overview_html(session) == ""
     session.opened(opened)
-    assert "Checking" in overview_html(session)
+    assert "Checking" in checking_html(session)
     session.facts = corpus_facts(opened, lambda fraction, what: None)
     made = overview_html(session)
-    assert "Checking" not in made
+    assert checking_html(session) == ""
     assert made.count('data-action="speak"') == len(opened.names)
     assert made.count("<rect") == session.facts.cover["n_diphone_types"]
     session.param.update(facts=None, check_trouble="<img src=x>")
-    assert "<img" not in overview_html(session)
+    assert "&lt;img" in checking_html(session)
+
+
+def test_progress_of_the_check_leaves_the_table_as_it_is(opened):
+    session = Session()
+    page = CorpusOverview(session, on_speak=lambda recording: None)
+    assert not page.checking.visible
+    session.opened(opened)
+    made, written = page.pane.html, []
+    page.pane.param.watch(lambda event: written.append(event.new), "html", onlychanged=False)
+    session.check_doing = "cleaning, 40 %"
+    assert "cleaning, 40 %" in page.checking.object
+    assert (page.pane.html, written) == (made, [])
+    session.facts = corpus_facts(opened, lambda fraction, what: None)
+    assert not page.checking.visible
+    assert len(written) == 1
 
 
 def test_the_map_marks_what_was_seldom_recorded():

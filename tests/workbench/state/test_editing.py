@@ -261,13 +261,12 @@ def test_what_stood_in_is_told_as_the_command_line_does(visit):
     session.param.update(target_kind="text", text="boys enjoy joyful noise")
     result = visit.run()
     found = synthesis.stand_ins(result.selection, result.utterance, session.corpus.phones)
-    told = stand_ins(result)
+    most, told = stand_ins(result)
     assert found
-    assert told[-1] in {s.sentence for s in found}
+    assert set(told) == {s.sentence for s in found}
     n = len(result.utterance.labels) - 1
-    first = f"{len(found)} of {n} diphones have no unit: "
-    assert told[0].startswith(first) == (2 * len(found) > n)
-    assert missing_text(result).startswith(told[0])
+    assert most.startswith(f"{len(found)} of {n} diphones have no unit: ") == (2 * len(found) > n)
+    assert missing_text(result).startswith(most or told[0])
     every = tuple(n for n in session.sentences if n != session.sentence)
     session.param.update(target_kind="recording", bans=every)
     with pytest.raises(NoUnitError):

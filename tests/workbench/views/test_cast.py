@@ -1,6 +1,7 @@
 """Several heads in one view: beside one another, faces at one height, each with the motion of its own."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -45,6 +46,9 @@ def test_each_head_speaks_the_same_motion_as_its_own_face_does(opened):
     for name, spoken in (("skin", result), ("child/skin", child)):
         assert values[name] == spoken.displacements_mm.astype(np.float32).tobytes()
     assert values["skin"] != values["child/skin"]
+    elsewhere = replace(child, request=replace(child.request, sentence="another"))
+    face.show_cast((elsewhere,))
+    assert "child/skin" not in {a for t in face.mesh_view.motion["tracks"] for a in t["actors"]}  # it rests
     face.show_cast(())
     assert len(face.mesh_view.actors) == alone
     assert face.mesh_view.camera == camera
