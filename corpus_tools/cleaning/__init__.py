@@ -4,7 +4,7 @@ from corpus_tools.cleaning.bias import PhoneHalves, RecordingBias, holding, phon
 from corpus_tools.cleaning.corpus import CleanedCorpus, clean_captures
 from corpus_tools.cleaning.face_model import FaceModel, face_model
 from corpus_tools.cleaning.fillers import GAP_FILLERS
-from corpus_tools.cleaning.filling import fill_gaps
+from corpus_tools.cleaning.filling import check_gap_method, fill_gaps
 from corpus_tools.cleaning.gaps import gaps, marker_gaps
 from corpus_tools.cleaning.head_motion import (
     HeadMotion,
@@ -35,6 +35,7 @@ __all__ = [
     "Rehearsals",
     "Slip",
     "Trial",
+    "check_gap_method",
     "clean_captures",
     "estimate_head_motion",
     "estimated_smooth",

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from corpus_tools.cleaning.face_model import face_model
-from corpus_tools.cleaning.filling import AUTO, fill_gaps
+from corpus_tools.cleaning.filling import AUTO, check_gap_method, fill_gaps
 from corpus_tools.cleaning.head_motion import (
     HeadMotion,
     fitted_frames,
@@ -57,8 +57,8 @@ class CleanedCorpus:
     head_motion: tuple[HeadMotion, ...]
     scale_sd: float
     sd_mm: tuple[FloatArray, ...]
-    outliers: tuple[Outliers | None, ...] = ()
-    slips: tuple[tuple[Slip, ...], ...] = ()
+    outliers: tuple[Outliers | None, ...]
+    slips: tuple[tuple[Slip, ...], ...]
 
 
 def _has_gaps(captures: Sequence[Capture]) -> bool:
@@ -185,7 +185,10 @@ def clean_captures(
     ------
     MotionError
         A recording never shows 3 head markers together; the message names it.
+    InputError
+        There is no such way to fill gaps.
     """
+    check_gap_method(gap_method)
     report = progress or (lambda fraction, what: None)
     report(0.0, "finding the head")
     known = range(len(captures)) if learn_from is None else learn_from
@@ -212,7 +215,7 @@ def clean_captures(
             stable, columns, known, gap_components, lambda f, w: report(0.6 + 0.1 * f, w)
         )
     familiar = [stable[i] for i in known]
-    wanted = gap_method in (AUTO, "pca-gp") and _has_gaps(familiar)
+    wanted = gap_method in (AUTO, "pca-gp") and _has_gaps(stable)
     model = face_model(familiar, gap_components) if wanted else None
     tried = REHEARSED if gap_method == AUTO else [gap_method]
     rehearsals = rehearse(

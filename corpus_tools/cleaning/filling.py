@@ -10,11 +10,26 @@ from corpus_tools.cleaning.face_model import FaceModel
 from corpus_tools.cleaning.fillers import GAP_FILLERS, LEAST_OTHERS
 from corpus_tools.cleaning.gaps import frame_ranges
 from corpus_tools.cleaning.rehearsal import Rehearsals
-from corpus_tools.core import BoolArray, Capture, FloatArray, FrameFlag, step
+from corpus_tools.core import BoolArray, Capture, FloatArray, FrameFlag, InputError, step
+from corpus_tools.core.errors import suggestion
 
-__all__ = ["AUTO", "fill_gaps"]
+__all__ = ["AUTO", "check_gap_method", "fill_gaps"]
 
 AUTO = "auto"
+
+
+def check_gap_method(name: str) -> None:
+    """Refuse a name that is neither "auto" nor that of a filler.
+
+    Raises
+    ------
+    InputError
+        It lists what there is.
+    """
+    known = [AUTO, *GAP_FILLERS]
+    if name not in known:
+        hint = suggestion(name, known) or "."
+        raise InputError(f"There is no gap filling called '{name}'{hint} Known: {', '.join(known)}.")
 
 
 def _gap_groups(seen: BoolArray) -> dict[tuple[int, int], list[int]]:
@@ -67,8 +82,7 @@ def fill_gaps(
     InputError
         There is no such method.
     """
-    if method != AUTO:
-        GAP_FILLERS[method]  # a wrong name is refused, whether there are gaps or not
+    check_gap_method(method)  # whether there are gaps or not
     rehearsed, used = rehearsals or Rehearsals(), Counter[str]()
     positions = np.array(capture.positions_mm)
     seen: BoolArray = np.asarray(np.isfinite(positions).all(axis=2))

@@ -11,7 +11,8 @@ from typing import Annotated, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from corpus_tools.core import Registry
+from corpus_tools.cleaning import check_gap_method
+from corpus_tools.core import InputError, Registry
 from corpus_tools.synthesis import DEFAULT_CURVE
 
 __all__ = [
@@ -97,6 +98,15 @@ class CleaningSettings(Section):
     remove_bias: bool = Field(
         True, description="Free each recording of the posture it keeps constantly (beyond the paper)."
     )
+
+    @field_validator("gap_method")
+    @classmethod
+    def _known(cls, name: str) -> str:
+        try:
+            check_gap_method(name)
+        except InputError as error:
+            raise ValueError(str(error).rstrip(".")) from None
+        return name
 
 
 @section("selection")

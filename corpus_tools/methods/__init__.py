@@ -1,10 +1,10 @@
 """Every way from timed phones to marker motion, by id."""
 
 from corpus_tools.methods import dominance, fragments, mean, viseme_linear
+from corpus_tools.methods.fragments import CONTEXT_S
 from corpus_tools.methods.registry import (
     METHODS,
     SEARCHES,
-    FragmentMethod,
     Method,
     Predictor,
     Variant,
@@ -13,10 +13,10 @@ from corpus_tools.methods.registry import (
 from corpus_tools.methods.training import SPEECH_MARGIN_S, TrainingSet, phone_anchors_s, speech_span_s
 
 __all__ = [
+    "CONTEXT_S",
     "METHODS",
     "SEARCHES",
     "SPEECH_MARGIN_S",
-    "FragmentMethod",
     "Method",
     "Predictor",
     "TrainingSet",

@@ -19,6 +19,7 @@ from corpus_tools.methods.dominance_model import (
     stack_problems,
 )
 from corpus_tools.methods.registry import METHODS, Method, Predictor
+from corpus_tools.methods.settings import Components
 from corpus_tools.methods.training import TrainingSet, phone_anchors_s
 from corpus_tools.synthesis import PostureBasis
 
@@ -132,7 +133,9 @@ def _predictor(training: TrainingSet, fitted: _Fitted, name: str) -> Predictor:
     return predict
 
 
-def fit_dominance_class(training: TrainingSet, components: int = 8, remove_bias: bool = True) -> Predictor:
+def fit_dominance_class(
+    training: TrainingSet, components: Components = 8, remove_bias: bool = True
+) -> Predictor:
     """Fit one dominance function per viseme class and principal component.
 
     Parameters
@@ -146,7 +149,9 @@ def fit_dominance_class(training: TrainingSet, components: int = 8, remove_bias:
     return _predictor(training, _classes(training, components, remove_bias), "dominance-class")
 
 
-def fit_dominance_phone(training: TrainingSet, components: int = 8, remove_bias: bool = True) -> Predictor:
+def fit_dominance_phone(
+    training: TrainingSet, components: Components = 8, remove_bias: bool = True
+) -> Predictor:
     """Fit one dominance function per phone and principal component, around that of its viseme class.
 
     Parameters are those of :func:`fit_dominance_class`.

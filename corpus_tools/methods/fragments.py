@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from typing import Any
 
-from corpus_tools.core import InputError, Trajectory, Utterance
+from corpus_tools.core import Trajectory, Utterance
 from corpus_tools.fragments import cut_fragment
 from corpus_tools.methods.registry import METHODS, SEARCHES, Method, Predictor
+from corpus_tools.methods.settings import Fading, Seconds, Weight, Weighting
 from corpus_tools.methods.training import TrainingSet
 from corpus_tools.synthesis import render_selection
+from corpus_tools.synthesis.blending import BlendMode
 from corpus_tools.synthesis.lips import close_bilabials
 
-__all__ = ["fit_greedy", "fit_viterbi"]
+__all__ = ["CONTEXT_S", "fit_greedy", "fit_viterbi"]
 
 CONTEXT_S = 0.4
 """Motion cut on both sides of a unit, s: half the longest overlap and a margin for resampling."""
 
+JOIN_COMPONENTS = 12
 LIP_COMPONENTS = 16
 ROUNDS = 3
-"""Of closure projection, as in the config of a synthesis."""
+"""Of the join distance and of closure projection: the defaults of a config, as those of all settings here."""
 
 
 def _fit(
@@ -28,15 +31,12 @@ def _fit(
     blend: dict[str, Any],
     remove_bias: bool,
     closure: bool,
-    components: int = 12,
 ) -> Predictor:
-    if blend["mode"] not in ("crossfade", "inertial"):
-        raise InputError(f"There is no blend mode '{blend['mode']}'. Known: crossfade, inertial.")
-    model = training.selection(remove_bias, components)
+    model = training.selection(remove_bias, JOIN_COMPONENTS)
     lips = training.lips(remove_bias, LIP_COMPONENTS) if closure else None
 
     def predict(utterance: Utterance) -> Trajectory:
-        selection = SEARCHES[search].search(model, utterance, n_rejected=0, **weights)
+        selection = SEARCHES[search](model, utterance, n_rejected=0, **weights)
         fragments = [cut_fragment(model.inventory, c.unit, CONTEXT_S) for c in selection.chosen]
         motion = render_selection(
             selection,
@@ -56,12 +56,12 @@ def fit_greedy(
     training: TrainingSet,
     remove_bias: bool = True,
     closure: bool = True,
-    mode: str = "crossfade",
-    weighting: str = "smootherstep",
-    overlap_s: float = 0.12,
-    inertial_s: float = 0.12,
-    duration: float = 1.0,
-    context: float = 0.3,
+    mode: BlendMode = "crossfade",
+    weighting: Weighting = "smootherstep",
+    overlap_s: Seconds = 0.12,
+    inertial_s: Fading = 0.12,
+    duration: Weight = 1.0,
+    context: Weight = 0.3,
 ) -> Predictor:
     """Index the recordings for the longest-first search of paper A.
 
@@ -87,16 +87,16 @@ def fit_viterbi(
     training: TrainingSet,
     remove_bias: bool = True,
     closure: bool = True,
-    mode: str = "crossfade",
-    weighting: str = "smootherstep",
-    overlap_s: float = 0.12,
-    inertial_s: float = 0.12,
-    duration: float = 1.0,
-    context: float = 0.3,
-    backoff: float = 2.0,
-    join: float = 1.0,
-    velocity: float = 0.3,
-    per_join: float = 0.0,
+    mode: BlendMode = "crossfade",
+    weighting: Weighting = "smootherstep",
+    overlap_s: Seconds = 0.12,
+    inertial_s: Fading = 0.12,
+    duration: Weight = 1.0,
+    context: Weight = 0.3,
+    backoff: Weight = 2.0,
+    join: Weight = 1.0,
+    velocity: Weight = 0.3,
+    per_join: Weight = 0.0,
 ) -> Predictor:
     """Index the recordings for the search of the cheapest path.
 
@@ -108,5 +108,7 @@ def fit_viterbi(
     return _fit(training, "viterbi", weights, blend | {"inertial_s": inertial_s}, remove_bias, closure)
 
 
-METHODS.add("greedy", Method("greedy", SEARCHES["greedy"].summary, fit_greedy))
-METHODS.add("viterbi", Method("viterbi", SEARCHES["viterbi"].summary, fit_viterbi))
+_LONGEST = "Longest fragment first, as paper A prints it (its endless loop mended)."
+_CHEAPEST = "The cheapest path over timing, context and join costs."
+METHODS.add("greedy", Method("greedy", _LONGEST, fit_greedy))
+METHODS.add("viterbi", Method("viterbi", _CHEAPEST, fit_viterbi))

@@ -10,14 +10,15 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, get_type_hints
 
 from corpus_tools.core import InputError, Registry, Selection, Trajectory, Utterance
 from corpus_tools.core.errors import suggestion
+from corpus_tools.methods.settings import setting_value
 from corpus_tools.methods.training import TrainingSet
 from corpus_tools.synthesis import select_greedy, select_viterbi
 
-__all__ = ["METHODS", "SEARCHES", "FragmentMethod", "Method", "Predictor", "Variant", "parse_variant"]
+__all__ = ["METHODS", "SEARCHES", "Method", "Predictor", "Variant", "parse_variant"]
 
 Predictor = Callable[[Utterance], Trajectory]
 """What fitting gives: the motion of an utterance at a uniform rate from 0 s to its end."""
@@ -47,41 +48,20 @@ class Method:
         parameters = list(inspect.signature(self.fit).parameters.values())[1:]
         return {p.name: p.default for p in parameters}
 
+    @property
+    def kinds(self) -> dict[str, Any]:
+        """What values each setting takes, as of :func:`~corpus_tools.methods.settings.setting_value`."""
+        hints = get_type_hints(self.fit, include_extras=True)
+        return {name: hints[name] for name in self.settings}
+
 
 METHODS: Registry[Method] = Registry("method")
+SEARCHES: Registry[Callable[..., Selection]] = Registry("method of fragments")
+"""``search(model, utterance, *, exclude, pins, bans, **weights) -> Selection``, fragments of paper A:
+they are then aligned, resampled and blended."""
 
-
-@dataclass(frozen=True, slots=True)
-class FragmentMethod:
-    """A search of paper A: choose motion fragments, which are then aligned, resampled and blended.
-
-    Attributes
-    ----------
-    name : str
-        Method id, as on the command line.
-    summary : str
-        One sentence for lists and tooltips.
-    search : callable
-        ``search(model, utterance, *, exclude, pins, bans, **weights) -> Selection``.
-    """
-
-    name: str
-    summary: str
-    search: Callable[..., Selection]
-
-
-SEARCHES: Registry[FragmentMethod] = Registry("method of fragments")
-
-SEARCHES.add(
-    "greedy",
-    FragmentMethod(
-        "greedy", "Longest fragment first, as paper A prints it (its endless loop mended).", select_greedy
-    ),
-)
-SEARCHES.add(
-    "viterbi",
-    FragmentMethod("viterbi", "The cheapest path over timing, context and join costs.", select_viterbi),
-)
+SEARCHES.add("greedy", select_greedy)
+SEARCHES.add("viterbi", select_viterbi)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,28 +91,20 @@ def parse_variant(text: str) -> Variant:
     Raises
     ------
     InputError
-        There is no such method or setting, or its value is of another kind.
+        There is no such method or setting, or its value is of another kind or out of range.
     """
     name, _, settings = text.strip().partition(":")
     method = METHODS[name]
-    changes: dict[str, Any] = {}
+    kinds, changes = method.kinds, {}
     for pair in settings.split("+") if settings else ():
         key, sign, value = pair.partition("=")
-        if key not in method.settings:
-            hint = suggestion(key, method.settings) or f"; known: {', '.join(method.settings) or 'none'}."
+        if key not in kinds:
+            hint = suggestion(key, kinds) or f"; known: {', '.join(kinds) or 'none'}."
             raise InputError(f"'{text}': the method '{name}' has no setting '{key}'{hint}")
         if not sign:
             raise InputError(f"'{text}': '{pair}' is not of the form KEY=VALUE, as in remove_bias=off.")
-        changes[key] = _value(text, key, value, method.settings[key])
+        try:
+            changes[key] = setting_value(kinds[key], value)
+        except ValueError as error:
+            raise InputError(f"'{text}': {key} is '{value}'; {error} was expected.") from None
     return Variant(text.strip(), method, changes)
-
-
-def _value(text: str, key: str, value: str, default: Any) -> Any:
-    """Return a value of the kind of the default: on or off, a number, a word."""
-    try:
-        if isinstance(default, bool):
-            return {"on": True, "true": True, "off": False, "false": False}[value.lower()]
-        return type(default)(value)
-    except (KeyError, ValueError):
-        kind = {bool: "on or off", int: "a whole number", float: "a number"}[type(default)]
-        raise InputError(f"'{text}': {key} is '{value}'; {kind} was expected.") from None

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from corpus_tools.core import FloatArray, InputError, Trajectory, Utterance, step
+from corpus_tools.core import FloatArray, Trajectory, Utterance, step
 from corpus_tools.methods.registry import METHODS, Method, Predictor
 from corpus_tools.methods.targets import anchor_times_s, class_targets_mm, nearest_class
 from corpus_tools.methods.training import TrainingSet
 
 __all__ = ["fit_viseme_linear"]
 
+Interpolation = Literal["linear", "pchip"]
+
 _TINY_S = 1e-6
 
 
-def fit_viseme_linear(training: TrainingSet, interpolation: str = "linear") -> Predictor:
+def fit_viseme_linear(training: TrainingSet, interpolation: Interpolation = "linear") -> Predictor:
     """Return the predictor that passes through the mean posture of each phone's viseme class.
 
     The posture stands at the centre of the phone; a silence rests between its two ends.
@@ -25,14 +29,7 @@ def fit_viseme_linear(training: TrainingSet, interpolation: str = "linear") -> P
     training : TrainingSet
     interpolation : {"linear", "pchip"}
         Straight, or monotone cubic (C1, at rest at each viseme that is an extreme).
-
-    Raises
-    ------
-    InputError
-        There is no such interpolation.
     """
-    if interpolation not in ("linear", "pchip"):
-        raise InputError(f"There is no interpolation '{interpolation}'. Known: linear, pchip.")
     targets = class_targets_mm(training)
     silence = training.phones.silence
 
@@ -60,7 +57,9 @@ def _knots(anchors_s: FloatArray, postures: FloatArray) -> tuple[FloatArray, Flo
     return np.array(knots), np.stack(values)
 
 
-def _curve(knots: FloatArray, values: FloatArray, times: FloatArray, interpolation: str) -> FloatArray:
+def _curve(
+    knots: FloatArray, values: FloatArray, times: FloatArray, interpolation: Interpolation
+) -> FloatArray:
     at = np.clip(times, knots[0], knots[-1])
     if len(knots) == 1:
         return np.repeat(values, len(times), axis=0)

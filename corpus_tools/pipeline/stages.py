@@ -12,7 +12,7 @@ import numpy.typing as npt
 from corpus_tools.config import ConfigBase
 from corpus_tools.core import InputError, Selection, Trajectory, UnitRef, Utterance
 from corpus_tools.fragments import cut_fragment
-from corpus_tools.methods import SEARCHES
+from corpus_tools.methods import CONTEXT_S, SEARCHES
 from corpus_tools.pipeline.head import Animation, Head, animate, vertex_frames
 from corpus_tools.pipeline.opened import OpenCorpus
 from corpus_tools.pipeline.overrides import overrides_of
@@ -22,9 +22,6 @@ from corpus_tools.synthesis import AlignedPieces, align_fragments, blend_pieces,
 from corpus_tools.synthesis.lips import close_bilabials
 
 __all__ = ["Synthesis", "align_units", "blend_units", "select_units", "synthesise"]
-
-CONTEXT_S = 0.4
-"""Motion kept on both sides of a unit: half the longest overlap allowed plus a margin for resampling."""
 
 MOST_BYTES = 2e9
 """Of the vertices of one synthesis (our choice: about 5 minutes of the bundled head at 120 frames/s)."""
@@ -84,11 +81,11 @@ def select_units(
         A diphone is covered by nothing, not even by backoff.
     """
     weights = config.selection.model_dump(exclude={"method", "components", "allow_backoff"})
-    method = SEARCHES[config.selection.method]
+    search = SEARCHES[config.selection.method]
     if config.selection.method == "greedy":
         weights.pop("prune")
     pinned, banned = overrides_of(config)
-    return method.search(
+    return search(
         corpus.model,
         utterance,
         exclude=tuple(exclude),

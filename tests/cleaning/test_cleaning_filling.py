@@ -216,11 +216,27 @@ def test_the_band_and_the_flags_go_on_through_cleaning():
     ]
 
 
+def test_a_gap_of_a_recording_that_was_not_learned_from_is_filled_by_the_others_that_were():
+    _, seen = face(9, n_frames=1200)
+    skull = np.tile(np.random.default_rng(2).normal(0, 60, (5, 3)), (1200, 1, 1))
+    whole = np.concatenate([skull, seen], axis=1)
+    learned, asked = capture(whole[:900]), holed(whole[900:], [(130, 170, 12)])
+
+    def gap_mm(recording, method):
+        pair = [learned, recording]
+        cleaned = clean_captures(pair, range(5), allow_scale=False, gap_method=method, learn_from=[0])
+        return cleaned.captures[1].positions_mm[130:171, 12]
+
+    wanted = gap_mm(capture(whole[900:]), "auto")
+    errors = {method: rms(gap_mm(asked, method), wanted) for method in ("auto", "pca-gp", "dct")}
+    assert errors["auto"] == errors["pca-gp"] < 0.3 * errors["dct"]
+
+
 def test_without_gaps_nothing_is_done_and_a_wrong_name_is_refused():
     _, seen = face(5, n_frames=60)
     whole = capture(seen)
     filled, sd_mm = fill_gaps(whole)
     assert filled is whole
     assert not sd_mm.any()
-    with pytest.raises(InputError, match=r"no gap filling called 'pca'"):
+    with pytest.raises(InputError, match=r"no gap filling called 'pca'.* Known: auto, dct"):
         fill_gaps(whole, "pca")

@@ -76,6 +76,7 @@ def test_every_field_is_written_bounded_and_described(name):
         ({"cleaning": {"cutoff_hz": 1e-300}}, ["cleaning.cutoff_hz", "0.1"]),
         ({"cleaning": {"head_cutoff_mm": 1e-300}}, ["cleaning.head_cutoff_mm", "0.001"]),
         ({"selection": {"join": 1e308}}, ["selection.join", "1000000"]),
+        ({"cleaning": {"gap_method": "dtc"}}, ["cleaning.gap_method", "did you mean 'dct'", "auto, "]),
         ({"schema": 99}, ["schema", "99"]),
         ({"blend": 3}, ["blend"]),
     ],
