@@ -73,3 +73,8 @@ class Trajectory:
     def rate_hz(self) -> float:
         """Frames per second of the uniform clock."""
         return 1.0 / float(np.median(np.diff(self.times_s)))
+
+    @property
+    def peak_ratios(self) -> tuple[float, ...]:
+        """Of each join: its peak acceleration over the natural 95th percentile, NaN when unknown."""
+        return tuple(join.peak_ratio for join in self.joins)

@@ -5,7 +5,7 @@ from corpus_tools.synthesis.backoff import Pin
 from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
 from corpus_tools.synthesis.blending import blend_pieces, blend_weights, render_selection
 from corpus_tools.synthesis.closure import close_lips, closure_direction
-from corpus_tools.synthesis.effect import EffectCurve, effect_curves, narrowed, peak_ratios
+from corpus_tools.synthesis.effect import EffectCurve, effect_curves, narrowed
 from corpus_tools.synthesis.greedy import greedy_as_printed, select_greedy
 from corpus_tools.synthesis.inertial import InertialMotion, join_inertially
 from corpus_tools.synthesis.joins import WINDOW_S as JOIN_WINDOW_S
@@ -13,6 +13,7 @@ from corpus_tools.synthesis.joins import (
     NaturalDistribution,
     join_gaps,
     natural_distribution,
+    peaks_at,
     ranked_joins,
     rms_acceleration,
 )
@@ -63,7 +64,7 @@ __all__ = [
     "narrowed",
     "natural_distribution",
     "overlap_lengths",
-    "peak_ratios",
+    "peaks_at",
     "posture_basis",
     "prepare_selection",
     "ranked_joins",

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from corpus_tools.core import FloatArray, Trajectory, frozen
+from corpus_tools.core import FloatArray, frozen
 from corpus_tools.synthesis.blending import blend_pieces
-from corpus_tools.synthesis.joins import WINDOW_S, NaturalDistribution, rms_acceleration
+from corpus_tools.synthesis.joins import NaturalDistribution
 from corpus_tools.synthesis.pieces import AlignedPieces
 
-__all__ = ["EffectCurve", "effect_curves", "narrowed", "peak_ratios"]
+__all__ = ["EffectCurve", "effect_curves", "narrowed"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,35 +38,16 @@ class EffectCurve:
             object.__setattr__(self, key, frozen(getattr(self, key)))
 
 
-def narrowed(aligned: AlignedPieces, natural: NaturalDistribution) -> AlignedPieces:
-    """Return the pieces with only the markers that joins are judged by: blending them costs half as much."""
+def narrowed(
+    aligned: AlignedPieces, natural: NaturalDistribution
+) -> tuple[AlignedPieces, NaturalDistribution]:
+    """Return both with only the markers that joins are judged by: blending them costs half as much."""
     columns = natural.columns
     pieces = tuple(
         replace(p, motion_mm=p.motion_mm[:, columns], flags=p.flags[:, columns]) for p in aligned.pieces
     )
-    return replace(aligned, pieces=pieces, names=tuple(aligned.names[c] for c in columns))
-
-
-def peak_ratios(trajectory: Trajectory, natural: NaturalDistribution) -> FloatArray:
-    """Return the peak acceleration around each join over the natural 95th percentile, (n_joins,).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        Of the markers of `natural` only (see :func:`narrowed`); before any closing of the lips.
-    natural : NaturalDistribution
-
-    Returns
-    -------
-    (n_joins,) float64
-        Above 1: higher than 95 % of the peaks of recorded speech. NaN without a natural distribution.
-    """
-    if not len(natural.peaks_mm_s2):
-        return np.full(len(trajectory.joins), np.nan)
-    p95 = natural.p95_mm_s2
-    acceleration = rms_acceleration(np.asarray(trajectory.values_mm), trajectory.rate_hz)
-    near = (np.abs(trajectory.times_s - join.time_s) <= 0.5 * WINDOW_S for join in trajectory.joins)
-    return np.array([acceleration[window].max() / p95 for window in near])
+    names = tuple(aligned.names[c] for c in columns)
+    return replace(aligned, pieces=pieces, names=names), replace(natural, columns=np.arange(len(columns)))
 
 
 def effect_curves(
@@ -83,6 +64,7 @@ def effect_curves(
     pieces : AlignedPieces
         Of the markers of `natural` only (see :func:`narrowed`).
     natural : NaturalDistribution
+        Of the same markers.
     weightings : mapping of name -> settings of its own (shape, weights)
     overlaps_s : sequence of float, s
     **settings
@@ -90,9 +72,7 @@ def effect_curves(
     """
     found = []
     for name, own in weightings.items():
-        rows = [
-            peak_ratios(blend_pieces(pieces, weighting=name, overlap_s=o, **{**settings, **own}), natural)
-            for o in overlaps_s
-        ]
+        given = {**settings, **own, "natural": natural}
+        rows = [blend_pieces(pieces, weighting=name, overlap_s=o, **given).peak_ratios for o in overlaps_s]
         found.append(EffectCurve(name, np.asarray(overlaps_s), np.array(rows)))
     return tuple(found)

@@ -16,6 +16,7 @@ __all__ = [
     "NaturalDistribution",
     "join_gaps",
     "natural_distribution",
+    "peaks_at",
     "piece_state",
     "ranked_joins",
     "rms_acceleration",
@@ -56,6 +57,11 @@ class NaturalDistribution:
             return float("nan")
         return float(100.0 * np.searchsorted(self.peaks_mm_s2, peak_mm_s2) / len(self.peaks_mm_s2))
 
+    def ratio(self, peak_mm_s2: float) -> float:
+        """Return a peak over the natural 95th percentile; NaN when there is none or nothing moves in it."""
+        p95 = self.p95_mm_s2
+        return peak_mm_s2 / p95 if p95 > 0 else float("nan")
+
 
 def rms_acceleration(values_mm: FloatArray, rate_hz: float) -> FloatArray:
     """Return the rms over markers of the acceleration, mm/s2, shape (n_frames,), by second differences."""
@@ -64,6 +70,24 @@ def rms_acceleration(values_mm: FloatArray, rate_hz: float) -> FloatArray:
     second = np.diff(values_mm, n=2, axis=0) * rate_hz**2
     rms = np.sqrt((second**2).sum(axis=2).mean(axis=1))
     return np.concatenate([rms[:1], rms, rms[-1:]])
+
+
+def peaks_at(
+    values_mm: FloatArray, times_s: FloatArray, rate_hz: float, instants_s: Sequence[float] | FloatArray
+) -> FloatArray:
+    """Return the largest rms acceleration within half of :data:`WINDOW_S` of each instant, (n,) mm/s2.
+
+    Parameters
+    ----------
+    values_mm : (n_frames, n_markers, 3) mm
+        Of the markers that are looked at.
+    times_s : (n_frames,) s
+    rate_hz : float
+    instants_s : (n,) s
+        Such as the times of joins.
+    """
+    acceleration = rms_acceleration(values_mm, rate_hz)
+    return np.array([acceleration[np.abs(times_s - t) <= 0.5 * WINDOW_S].max() for t in instants_s])
 
 
 def _window_peaks(acceleration: FloatArray, width: int) -> FloatArray:
@@ -126,14 +150,11 @@ def ranked_joins(trajectory: Trajectory, natural: NaturalDistribution) -> tuple[
         that is unknown or nothing moves in it.
     """
     values = np.asarray(trajectory.values_mm)[:, natural.columns]
-    acceleration = rms_acceleration(values, trajectory.rate_hz)
-    found, p95 = [], natural.p95_mm_s2
-    for join in trajectory.joins:
-        near = np.abs(trajectory.times_s - join.time_s) <= 0.5 * WINDOW_S
-        peak = float(acceleration[near].max())
-        ratio = peak / p95 if p95 > 0 else float("nan")
-        found.append(replace(join, natural_percentile=natural.percentile(peak), peak_ratio=ratio))
-    return tuple(found)
+    peaks = peaks_at(values, trajectory.times_s, trajectory.rate_hz, [j.time_s for j in trajectory.joins])
+    return tuple(
+        replace(join, natural_percentile=natural.percentile(peak), peak_ratio=natural.ratio(peak))
+        for join, peak in zip(trajectory.joins, peaks.tolist(), strict=True)
+    )
 
 
 def piece_state(piece: Piece, frame: int, rate_hz: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -9,6 +9,7 @@ from corpus_tools.synthesis import (
     NaturalDistribution,
     align_fragments,
     blend_pieces,
+    narrowed,
     natural_distribution,
     ranked_joins,
     rms_acceleration,
@@ -136,6 +137,8 @@ def test_a_join_is_placed_by_its_peak_among_natural_ones():
     for nothing in (np.zeros(5), np.zeros(0)):
         unknown = ranked_joins(rough, dataclasses.replace(natural, peaks_mm_s2=nothing))
         assert np.isnan(unknown[0].peak_ratio)
+    few, of_few = narrowed(align_fragments(*joined(still, parabola(6.0, 0, 0, 1.0)), names=NAMES), natural)
+    assert blend_pieces(few, natural=of_few).peak_ratios == placed.peak_ratios
     unmoved = dataclasses.replace(natural, columns=np.array([1]))
     assert [j.natural_percentile for j in ranked_joins(rough, unmoved)] == [pytest.approx(50, abs=1)]
 

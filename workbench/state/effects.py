@@ -15,7 +15,6 @@ from corpus_tools.synthesis import (
     blend_pieces,
     effect_curves,
     narrowed,
-    peak_ratios,
 )
 from workbench.state.signals import SIGNALS, Signal
 from workbench.state.stages import Request, Result
@@ -119,11 +118,11 @@ def compute_effects(result: Result) -> Effects:
 
     Inertial joins know neither: they are measured at every duration instead, as one curve "inertial".
     """
-    natural, settings = result.request.corpus.natural, blend_settings(result.request)
-    pieces = narrowed(result.pieces, natural)
+    settings = blend_settings(result.request)
+    pieces, natural = narrowed(result.pieces, result.request.corpus.natural)
     if result.request.config.blend.mode == "inertial":
-        blended = (blend_pieces(pieces, **{**settings, "inertial_s": s}) for s in OVERLAPS_S)
-        ratios = np.array([peak_ratios(b, natural) for b in blended])
+        settings["natural"] = natural
+        ratios = np.array([blend_pieces(pieces, **settings, inertial_s=s).peak_ratios for s in OVERLAPS_S])
         curves: tuple[EffectCurve, ...] = (EffectCurve("inertial", np.asarray(OVERLAPS_S), ratios),)
     else:
         names: dict[str, dict[str, Any]] = {name: {} for name in WEIGHTINGS if name != "user"}

@@ -24,7 +24,7 @@ from corpus_tools.pipeline import (
     select_units,
     speak_for,
 )
-from corpus_tools.synthesis import AlignedPieces, blend_pieces, narrowed, peak_ratios
+from corpus_tools.synthesis import AlignedPieces
 
 __all__ = ["Request", "Result", "Stages"]
 
@@ -76,8 +76,6 @@ class Result:
     trajectory : Trajectory
     head : Head
     animation : Animation
-    ratios : tuple of float
-        Peak acceleration of each join over the natural 95th percentile, before the lips are closed.
     ran : tuple of str
         Stages that were computed for this result; the others were still valid.
     elapsed_ms : float
@@ -91,9 +89,13 @@ class Result:
     trajectory: Trajectory
     head: Head
     animation: Animation
-    ratios: tuple[float, ...]
     ran: tuple[str, ...]
     elapsed_ms: float
+
+    @property
+    def ratios(self) -> tuple[float, ...]:
+        """Peak acceleration of each join over the natural 95th percentile, before the lips are closed."""
+        return self.trajectory.peak_ratios
 
     @property
     def displacements_mm(self) -> FloatArray:
@@ -110,13 +112,6 @@ class Result:
 
 def _values(config: ConfigBase, *names: str) -> tuple[str, ...]:
     return tuple(getattr(config, n).model_dump_json() for n in names)
-
-
-def _ratios(corpus: OpenCorpus, pieces: AlignedPieces, config: ConfigBase) -> tuple[float, ...]:
-    natural = corpus.natural
-    settings = config.blend.model_dump()
-    blended = blend_pieces(narrowed(pieces, natural), **settings)
-    return tuple(float(r) for r in peak_ratios(blended, natural))
 
 
 class Stages:
@@ -186,9 +181,8 @@ class Stages:
         head_key = (corpus, *_values(config, "retarget", "deform"))
         head = self._stage("head", head_key, lambda: prepare_head(corpus, config.deform.mesh, config), ran)
         animation = self._stage("animate", (key, head_key), lambda: animate(head, trajectory), ran)
-        ratios = self._stage("measure", key, lambda: _ratios(corpus, pieces, config), [])
         elapsed_ms = 1000 * (time.perf_counter() - started)
-        parts = (utterance, selection, pieces, trajectory, head, animation, ratios)
+        parts = (utterance, selection, pieces, trajectory, head, animation)
         return Result(request, *parts, tuple(ran), elapsed_ms)
 
     def on_head(self, result: Result, name: str) -> Result:
@@ -225,7 +219,7 @@ class Stages:
             capture.times_s, capture.positions_mm, capture.names, (), capture.flags, capture.history
         )
         animation = animate(result.head, trajectory)
-        return replace(result, trajectory=trajectory, animation=animation, ratios=())
+        return replace(result, trajectory=trajectory, animation=animation)
 
     def _target(self, request: Request, ran: list[str]) -> Utterance:
         if not request.text:

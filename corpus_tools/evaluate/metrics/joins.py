@@ -14,7 +14,7 @@ import numpy as np
 from corpus_tools.core import BoolArray, FloatArray
 from corpus_tools.evaluate.comparison import Comparison
 from corpus_tools.evaluate.metrics.registry import metric, quotient
-from corpus_tools.synthesis import JOIN_WINDOW_S, rms_acceleration
+from corpus_tools.synthesis import peaks_at
 
 __all__ = ["join_peaks"]
 
@@ -23,14 +23,9 @@ _MEETING = "all face markers, where fragments meet"
 
 def join_peaks(comparison: Comparison) -> FloatArray:
     """Return the peak rms acceleration of lips and chin around each join (or other instant), mm/s2."""
-    times = np.asarray(comparison.prediction.times_s)
-    values = np.asarray(comparison.prediction.values_mm)[:, comparison.natural.columns]
-    acceleration = rms_acceleration(values, comparison.natural.rate_hz)
-    peaks = [
-        acceleration[np.abs(times - instant_s) <= 0.5 * JOIN_WINDOW_S].max()
-        for instant_s in comparison.instants_s
-    ]
-    return np.array(peaks)
+    motion, natural = comparison.prediction, comparison.natural
+    values = np.asarray(motion.values_mm)[:, natural.columns]
+    return peaks_at(values, motion.times_s, natural.rate_hz, comparison.instants_s)
 
 
 def _summed(values: FloatArray | BoolArray | list[float]) -> FloatArray:
