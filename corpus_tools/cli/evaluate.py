@@ -6,7 +6,7 @@ import contextlib
 import datetime
 import platform
 import sys
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,7 +14,7 @@ import typer
 
 import corpus_tools
 from corpus_tools.cli.common import PATH, check_out_folder, emit_json, progress_bar, say
-from corpus_tools.core import InputError, Recording
+from corpus_tools.core import InputError
 from corpus_tools.evaluate import (
     METRICS,
     Fold,
@@ -29,15 +29,15 @@ from corpus_tools.evaluate import (
 )
 from corpus_tools.methods import METHODS, Variant, parse_variant
 from corpus_tools.pipeline import (
+    CorpusSource,
+    Progress,
     RawCorpus,
-    cleaned_recordings,
     code_hash,
     joined_corpora,
     library_versions,
     one_thread,
     read_corpus,
 )
-from corpus_tools.speech import PhoneSet
 
 __all__ = ["register"]
 
@@ -53,32 +53,6 @@ SHOWN = (
     "word_rmse",
 )
 
-Progress = Callable[[float, str], None]
-
-
-class _Cleaned:
-    """A corpus as the evaluation asks for it: read and cleaned anew by what may be known in a fold.
-
-    Recordings as captured are held while they are cleaned, not while methods are fitted: reading them again
-    is a small part of a fold.
-    """
-
-    def __init__(self, read: Callable[[], RawCorpus]) -> None:
-        self._read = read
-        self._raw: RawCorpus | None = read()
-        self.phones: PhoneSet = self._raw.phones
-        self.names, self.skipped = self._raw.names, self._raw.skipped
-        self.description = self._raw.description
-
-    def cleaned(self, learn_from: Collection[str], progress: Progress) -> Sequence[Recording]:
-        raw, self._raw = self._raw or self._read(), None
-        if raw.names != self.names:
-            raise InputError(
-                f"'{self.description.folder}': {len(raw.names)} recordings are usable and {len(self.names)} "
-                "were at the start; leave the corpus as it is until the evaluation is done."
-            )
-        return cleaned_recordings(raw, learn_from=frozenset(learn_from), progress=progress)[0]
-
 
 def _variants(methods: str | None) -> list[Variant]:
     texts = [m for m in (methods or ",".join(METHODS)).split(",") if m.strip()]
@@ -93,7 +67,7 @@ def _variants(methods: str | None) -> list[Variant]:
 
 def _split(
     corpus: Path, test_corpus: Path | None, folds: int | None, alone: bool, seed: int, progress: Progress
-) -> tuple[_Cleaned, tuple[Fold, ...], str]:
+) -> tuple[CorpusSource, tuple[Fold, ...], str]:
     """Return the recordings, which of them are tested together, and how that is called."""
     known: list[int] = []
 
@@ -105,7 +79,7 @@ def _split(
             return raw
         return joined_corpora(raw, read_corpus(test_corpus, report, keep_sound=False))
 
-    source = _Cleaned(read)
+    source = CorpusSource(read)
     names, tested = source.names[: known[0]], source.names[known[0] :]
     if test_corpus is not None:
         return source, one_split(names, tested), f"test corpus of {len(tested)} sentences"
@@ -115,24 +89,15 @@ def _split(
     return source, k_folds(names, n, seed), f"{n} folds"
 
 
-def _telling_folds(progress: Progress, n: int) -> Progress:
-    """Return a progress that also says on stderr when a fold begins, where no bar is drawn."""
-    told = ""
-
-    def report(fraction: float, what: str) -> None:
-        nonlocal told
-        fold = what.partition(":")[0]
-        if fold.startswith("fold ") and fold != told and sys.stderr is not None and not sys.stderr.isatty():
-            told = fold
-            with contextlib.suppress(OSError):  # whoever reads it may be gone
-                sys.stderr.write(f"{fold} of {n}, {100 * fraction:.0f} % done\n")
-                sys.stderr.flush()
-        progress(fraction, what)
-
-    return report
+def _tell_fold(number: int, n: int) -> None:
+    """Say on stderr that a fold begins, where no bar is drawn."""
+    if sys.stderr is not None and not sys.stderr.isatty():
+        with contextlib.suppress(OSError):  # whoever reads it may be gone
+            sys.stderr.write(f"fold {number} of {n}, {100 * (number - 1) / n:.0f} % done\n")
+            sys.stderr.flush()
 
 
-def _about(source: _Cleaned, how: str, variants: Sequence[Variant], seed: int) -> dict[str, Any]:
+def _about(source: CorpusSource, how: str, variants: Sequence[Variant], seed: int) -> dict[str, Any]:
     return {
         "corpus": source.description.name or source.description.folder.name,
         "split": how,
@@ -179,7 +144,8 @@ def _run(
             split,
             variants,
             seed=seed,
-            progress=_telling_folds(lambda f, w: progress(0.03 + 0.94 * f, w), len({f.group for f in split})),
+            progress=lambda f, w: progress(0.03 + 0.94 * f, w),
+            on_fold=_tell_fold,
         )
         progress(0.97, "resampling sentences")
         table = tabulate(result, seed)

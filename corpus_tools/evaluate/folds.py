@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from corpus_tools.core import InputError
+from corpus_tools.core import InputError, counted
 
 __all__ = ["Fold", "k_folds", "leave_one_out", "one_split"]
 
@@ -47,8 +47,12 @@ def k_folds(names: Sequence[str], k: int, seed: int = 0) -> tuple[Fold, ...]:
     Raises
     ------
     InputError
-        `k` is less than 2 or more than there are recordings.
+        There are fewer than 2 recordings, or `k` is less than 2 or more than there are.
     """
+    if len(names) < 2:
+        raise InputError(
+            f"Folds need at least 2 usable recordings; {counted(len(names), 'is', 'are')} there."
+        )
     if not 2 <= k <= len(names):
         raise InputError(
             f"--folds is {k}: a number from 2 to {len(names)}, the number of usable recordings, was expected."
@@ -69,7 +73,9 @@ def leave_one_out(names: Sequence[str], seed: int = 0) -> tuple[Fold, ...]:
         There are fewer than 4 recordings.
     """
     if len(names) < 4:
-        raise InputError(f"--leave-one-out needs at least 4 usable recordings; {len(names)} are there.")
+        raise InputError(
+            f"--leave-one-out needs at least 4 usable recordings; {counted(len(names), 'is', 'are')} there."
+        )
     groups = min(MOST_GROUPS, len(names) // 2)
     mixed = _shuffled(names, seed)
     folds = [

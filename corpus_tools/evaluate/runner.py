@@ -127,6 +127,7 @@ def evaluate(
     rate_hz: float = 120.0,
     seed: int = 0,
     progress: Progress = lambda fraction, what: None,
+    on_fold: Callable[[int, int], None] = lambda number, n: None,
 ) -> Evaluation:
     """Fit every method on the training recordings of each fold and measure it on the others.
 
@@ -147,10 +148,14 @@ def evaluate(
         Of the draw of repeated words.
     progress : callable
         ``progress(fraction, what)``; may raise to cancel.
+    on_fold : callable
+        ``on_fold(number, n)``: a group of folds begins, of `n`, counted from 1.
     """
     collected = _Collected()
     done, total = 0, len(folds)
-    for group in sorted({fold.group for fold in folds}):
+    groups = sorted({fold.group for fold in folds})
+    for number, group in enumerate(groups, 1):
+        on_fold(number, len(groups))
         mine = [fold for fold in folds if fold.group == group]
         part = lambda f, w, at=done: progress((at + f) / total, w)  # noqa: E731
         _run_group(collected, source, mine, variants, rate_hz, seed, part)
@@ -173,17 +178,17 @@ def _run_group(
     tested = {name for fold in folds for name in fold.test}
     known = sorted({name for fold in folds for name in (*fold.train, *fold.test)} - tested)
     recordings = {r.name: r for r in source.cleaned(known, lambda f, w: progress(0.2 * f, w))}
-    others = TrainingSet([recordings[n] for n in known], source.phones, rate_hz)
+
+    def training_of(names: Sequence[str]) -> TrainingSet:
+        return TrainingSet([recordings[n] for n in names], source.phones, rate_hz)
+
+    others = training_of(known)
     collected.naturals.append(natural_of(others))
     for index, fold in enumerate(folds):
         same = set(fold.train) == set(known)
-        training = others if same else _training(recordings, fold, source.phones, rate_hz)
+        training = others if same else training_of(fold.train)
         part = lambda f, w, at=index: progress(at + 0.2 + 0.8 * f, w)  # noqa: E731
         _run_fold(collected, fold, training, recordings, variants, seed, part)
-
-
-def _training(recordings: dict[str, Recording], fold: Fold, phones: PhoneSet, rate_hz: float) -> TrainingSet:
-    return TrainingSet([recordings[n] for n in fold.train], phones, rate_hz)
 
 
 def _run_fold(

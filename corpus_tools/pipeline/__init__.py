@@ -16,6 +16,7 @@ from corpus_tools.pipeline.reading import (
     read_corpus,
     reference_columns,
 )
+from corpus_tools.pipeline.source import CorpusSource
 from corpus_tools.pipeline.speaking import (
     check_speech,
     corpus_vocabulary,
@@ -30,6 +31,7 @@ from corpus_tools.synthesis.lips import LipModel
 
 __all__ = [
     "Animation",
+    "CorpusSource",
     "Head",
     "LipModel",
     "OpenCorpus",

@@ -10,7 +10,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 import weakref
 from dataclasses import replace
 
@@ -18,10 +17,9 @@ import numpy as np
 import pytest
 from strategies.talking import talking_corpus
 
-from corpus_tools.cli.evaluate import _Cleaned
 from corpus_tools.core import InputError
 from corpus_tools.evaluate import METRICS
-from corpus_tools.pipeline import read_corpus
+from corpus_tools.pipeline import CorpusSource, read_corpus
 
 FILES = {"table.csv", "sentences.csv", "table.json", "report.html", "run.json"}
 
@@ -137,7 +135,7 @@ def test_recordings_as_captured_are_let_go_once_they_are_cleaned(corpus):
         captured.extend(weakref.ref(c.positions_mm) for c in raw.captures)
         return raw
 
-    source = _Cleaned(read)
+    source = CorpusSource(read)
     first = source.cleaned(source.names[2:], lambda f, w: None)
     gc.collect()
     assert len(captured) == 9
@@ -152,7 +150,7 @@ def test_a_corpus_that_changes_on_the_way_is_refused(corpus):
     raw = read_corpus(corpus, keep_sound=False)
     fewer = replace(raw, captures=raw.captures[1:], utterances=raw.utterances[1:])
     given = iter([raw, fewer])
-    source = _Cleaned(lambda: next(given))
+    source = CorpusSource(lambda: next(given))
     source.cleaned(source.names, lambda f, w: None)
     with pytest.raises(InputError, match="8 recordings are usable and 9 were at the start"):
         source.cleaned(source.names, lambda f, w: None)
@@ -203,7 +201,8 @@ def test_ctrl_c_leaves_nothing_behind(corpus, tmp_path):
         text=True,
         env=os.environ | {"OMP_NUM_THREADS": "1"},
     )
-    time.sleep(3.0)
+    first = process.stderr.readline()
+    assert first.startswith("fold 1 of 4")
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=30)
     assert process.returncode == 2

@@ -67,6 +67,8 @@ def test_leave_one_out_leaves_out_one(n):
 def test_impossible_folds_are_refused(k):
     with pytest.raises(InputError, match=f"--folds is {k}: a number from 2 to 23"):
         k_folds(NAMES, k)
+    with pytest.raises(InputError, match=r"at least 2 usable recordings; 1 is there\.$"):
+        k_folds(NAMES[:1], 5)
     with pytest.raises(InputError, match="at least 4"):
         leave_one_out(NAMES[:3])
 
