@@ -11,7 +11,7 @@ from corpus_tools.cleaning.face_model import FaceModel
 from corpus_tools.cleaning.series import fill_dct, fill_led, fill_process
 from corpus_tools.core import BoolArray, FloatArray, IntArray, Registry
 
-__all__ = ["GAP_FILLERS", "LEAST_OTHERS", "Filler"]
+__all__ = ["GAP_FILLERS", "LEAST_OTHERS", "Filler", "others_tell"]
 
 WINDOW_S = 2.0
 """Motion on either side of a gap that its filling looks at, s."""
@@ -69,6 +69,11 @@ def _by_itself(
     return filled, sd
 
 
+def others_tell(seen: BoolArray, gap: tuple[int, int]) -> bool:
+    """Return whether enough markers are seen throughout a gap to tell where the hidden ones are."""
+    return int(seen[gap[0] : gap[1] + 1].all(axis=0).sum()) >= LEAST_OTHERS
+
+
 def _others(seen: BoolArray, span: slice, gap: tuple[int, int]) -> IntArray:
     """Return the markers that are seen throughout the window, or at least throughout the gap."""
     steady = np.flatnonzero(seen[gap[0] : gap[1] + 1].all(axis=0))
@@ -86,10 +91,10 @@ def together(
     where too few others are seen, cosines are.
     """
     seen: BoolArray = np.asarray(np.isfinite(positions).all(axis=2))
+    if model is None or not others_tell(seen, gap):
+        return cosines(positions, rate_hz, gap, markers, model)
     span = _window(len(positions), gap, round(WINDOW_S * rate_hz))
     others = _others(seen, span, gap)
-    if model is None or len(others) < LEAST_OTHERS:
-        return cosines(positions, rate_hz, gap, markers, model)
     frames = np.arange(len(positions))[span]
     hidden = (frames >= gap[0]) & (frames <= gap[1])
     known = seen[span][:, others].all(axis=1) & seen[span][:, markers].all(axis=1) & ~hidden

@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 
 from corpus_tools.cleaning.face_model import FaceModel
-from corpus_tools.cleaning.fillers import GAP_FILLERS, LEAST_OTHERS
+from corpus_tools.cleaning.fillers import GAP_FILLERS, others_tell
 from corpus_tools.cleaning.gaps import frame_ranges
 from corpus_tools.cleaning.rehearsal import Rehearsals
 from corpus_tools.core import BoolArray, Capture, FloatArray, FrameFlag, InputError, step
@@ -94,7 +94,7 @@ def fill_gaps(
     measured = np.where(seen[..., None], positions, np.nan)
     for gap, columns in _gap_groups(seen).items():
         markers, n = np.array(columns), gap[1] - gap[0] + 1
-        others = int(seen[gap[0] : gap[1] + 1].all(axis=0).sum()) >= LEAST_OTHERS
+        others = others_tell(seen, gap)
         chosen = rehearsed.best(n, others) if method == AUTO else method
         values, sd = GAP_FILLERS[chosen](measured, capture.rate_hz, gap, markers, model)
         sd = sd * rehearsed.widen(n, others, chosen)

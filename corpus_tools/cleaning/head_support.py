@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from corpus_tools.cleaning.head_motion import REFERENCE_FRAMES, remove_head_motion
-from corpus_tools.core import Capture, FloatArray, MotionError
+from corpus_tools.core import SPEECH_REGIONS, Capture, FloatArray, MotionError
 
 __all__ = ["LEAST_SEEN", "STEADY_MM", "supporting_columns"]
 
@@ -22,7 +22,7 @@ STEADY_MM = 1.0
 LEAST_SEEN = 0.95
 """Share of frames in which a supporting marker must be seen (our choice)."""
 
-_SPEAKING = frozenset({"lip_out", "lip_in", "chin", "head"})
+_SPEAKING = frozenset({*SPEECH_REGIONS, "head"})
 
 
 def supporting_columns(

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from corpus_tools.cleaning.face_model import FaceModel, face_model
-from corpus_tools.cleaning.fillers import GAP_FILLERS, LEAST_OTHERS
+from corpus_tools.cleaning.fillers import GAP_FILLERS, others_tell
 from corpus_tools.cleaning.gaps import frame_ranges
 from corpus_tools.core import BoolArray, Capture, FloatArray, IntArray, frozen
 
@@ -96,9 +96,9 @@ def _wanted(captures: Sequence[Capture]) -> dict[tuple[int, bool], list[int]]:
     for capture in captures:
         seen = np.asarray(np.isfinite(capture.positions_mm).all(axis=2))
         for marker in np.flatnonzero(~seen.all(axis=0) & seen.any(axis=0)):
-            for a, b in frame_ranges(~seen[:, marker]):
-                others = int(seen[a : b + 1].all(axis=0).sum()) >= LEAST_OTHERS
-                found.setdefault((length_class(b - a + 1), others), []).append(int(marker))
+            for gap in frame_ranges(~seen[:, marker]):
+                key = length_class(gap[1] - gap[0] + 1), others_tell(seen, gap)
+                found.setdefault(key, []).append(int(marker))
     return found
 
 

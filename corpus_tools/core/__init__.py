@@ -1,7 +1,7 @@
 """Frozen types, errors and small tools that everything else is made of; numpy only."""
 
 from corpus_tools.core.arrays import BoolArray, FloatArray, IntArray, frozen
-from corpus_tools.core.capture import Audio, Capture, FrameFlag
+from corpus_tools.core.capture import FLAGGED, SPEECH_REGIONS, Audio, Capture, FrameFlag, region_columns
 from corpus_tools.core.errors import (
     ConfigError,
     CorpusError,
@@ -24,10 +24,12 @@ from corpus_tools.core.mesh import Mesh
 from corpus_tools.core.registry import Registry
 from corpus_tools.core.selection import Candidate, ChosenUnit, Costs, Selection, UnitRef
 from corpus_tools.core.trajectory import Join, Trajectory
-from corpus_tools.core.utterance import Recording, Utterance
+from corpus_tools.core.utterance import Recording, Utterance, speech_span_s
 from corpus_tools.core.words import counted
 
 __all__ = [
+    "FLAGGED",
+    "SPEECH_REGIONS",
     "Audio",
     "BoolArray",
     "Candidate",
@@ -71,5 +73,7 @@ __all__ = [
     "check_writable",
     "counted",
     "frozen",
+    "region_columns",
+    "speech_span_s",
     "step",
 ]

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from corpus_tools.core.arrays import FloatArray, IntArray, frozen
+from corpus_tools.core.arrays import BoolArray, FloatArray, IntArray, frozen
 from corpus_tools.core.errors import MotionError
 from corpus_tools.core.history import History, Step
 
-__all__ = ["Audio", "Capture", "FrameFlag"]
+__all__ = ["FLAGGED", "SPEECH_REGIONS", "Audio", "Capture", "FrameFlag", "region_columns"]
+
+SPEECH_REGIONS = ("lip_out", "lip_in", "chin")
+"""Regions of the markers that speech moves most."""
 
 
 class FrameFlag(enum.IntFlag):
@@ -27,6 +31,10 @@ class FrameFlag(enum.IntFlag):
     FILLED = 2
     DOUBTFUL = 4
     OUTLIER = 8
+
+
+FLAGGED = np.uint8(FrameFlag.FILLED | FrameFlag.DOUBTFUL | FrameFlag.OUTLIER)
+"""Any of these: a sample to be wary of."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,6 +110,19 @@ class Capture:
         """n_frames / rate_hz, in seconds."""
         return self.n_frames / self.rate_hz
 
+    @property
+    def measured(self) -> BoolArray:
+        """Samples that were captured, neither filled nor doubtful, (n_frames, n_markers)."""
+        assert self.flags is not None
+        kept = self.flags & (FrameFlag.MEASURED | FrameFlag.FILLED | FrameFlag.DOUBTFUL)
+        return np.asarray(kept == FrameFlag.MEASURED)
+
+    @property
+    def flagged(self) -> BoolArray:
+        """Samples that were filled, are doubtful or were outliers, (n_frames, n_markers)."""
+        assert self.flags is not None
+        return np.asarray((self.flags & FLAGGED) > 0)
+
     def indices(self, names: tuple[str, ...] | list[str]) -> IntArray:
         """Return the column of each marker name, shape (len(names),).
 
@@ -124,6 +145,20 @@ class Capture:
 def region_of(name: str) -> str:
     """Return the region a marker name stands for: its letters before the number ("lip_in3" -> "lip_in")."""
     return name.rstrip("0123456789").rstrip("_") or name
+
+
+def region_columns(regions: Sequence[str], wanted: Collection[str] | None) -> IntArray:
+    """Return the columns of the markers of some regions; all when None, or when there are none of them.
+
+    Parameters
+    ----------
+    regions : sequence of str
+        Of every marker.
+    wanted : collection of str or None
+        Such as :data:`SPEECH_REGIONS`.
+    """
+    found = [i for i, region in enumerate(regions) if wanted is not None and region in wanted]
+    return np.array(found or range(len(regions)), dtype=np.int64)
 
 
 def _check_positions(positions: FloatArray, names: tuple[str, ...], rate_hz: float) -> None:

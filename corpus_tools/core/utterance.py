@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from corpus_tools.core.capture import Audio, Capture
 from corpus_tools.core.labels import Tier
 
-__all__ = ["Recording", "Utterance"]
+__all__ = ["Recording", "Utterance", "speech_span_s"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,3 +58,9 @@ class Recording:
     def name(self) -> str:
         """Id of the recording."""
         return self.utterance.name
+
+
+def speech_span_s(utterance: Utterance, silence: str, margin_s: float = 0.0) -> tuple[float, float]:
+    """Return start of the first and end of the last phone that is not silence, s, widened by a margin."""
+    spoken = [p for p in utterance.phones if p.text != silence]
+    return spoken[0].start_s - margin_s, spoken[-1].end_s + margin_s

@@ -8,9 +8,18 @@ from functools import cached_property
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from corpus_tools.core import BoolArray, Capture, FloatArray, FrameFlag, IntArray, Recording, Trajectory
-from corpus_tools.evaluate.natural import Natural, articulators, region_columns
-from corpus_tools.methods import SPEECH_MARGIN_S, speech_span_s
+from corpus_tools.core import (
+    BoolArray,
+    Capture,
+    FloatArray,
+    IntArray,
+    Recording,
+    Trajectory,
+    region_columns,
+    speech_span_s,
+)
+from corpus_tools.evaluate.natural import Natural, articulators
+from corpus_tools.methods import SPEECH_MARGIN_S
 from corpus_tools.speech import PhoneSet
 
 __all__ = ["Comparison", "curve_at"]
@@ -88,9 +97,7 @@ class Comparison:
     @cached_property
     def measured(self) -> BoolArray:
         """Samples that were captured, neither filled nor doubtful, (n_frames, n_markers)."""
-        assert self.capture.flags is not None
-        seen = self.capture.flags[self.frames] & (FrameFlag.MEASURED | FrameFlag.FILLED | FrameFlag.DOUBTFUL)
-        return np.asarray(seen == FrameFlag.MEASURED)
+        return np.asarray(self.capture.measured[self.frames])
 
     @cached_property
     def whole(self) -> BoolArray:
@@ -99,7 +106,7 @@ class Comparison:
 
     def columns(self, regions: Sequence[str] | None) -> IntArray:
         """Return the columns of some regions."""
-        return region_columns(self.capture, regions)
+        return region_columns(self.capture.regions, regions)
 
     @cached_property
     def truth_articulators(self) -> FloatArray:

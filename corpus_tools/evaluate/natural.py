@@ -7,8 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from corpus_tools.core import BoolArray, Capture, FloatArray, IntArray
-from corpus_tools.methods import SPEECH_MARGIN_S, TrainingSet, speech_span_s
+from corpus_tools.core import (
+    SPEECH_REGIONS,
+    BoolArray,
+    Capture,
+    FloatArray,
+    IntArray,
+    region_columns,
+    speech_span_s,
+)
+from corpus_tools.methods import SPEECH_MARGIN_S, TrainingSet
 from corpus_tools.speech import (
     closure_threshold_mm,
     jaw_mm,
@@ -20,16 +28,13 @@ from corpus_tools.synthesis import PostureBasis, natural_distribution
 
 __all__ = [
     "ARTICULATORS",
-    "SPEECH_REGIONS",
     "Moments",
     "Natural",
     "articulators",
     "natural_of",
-    "region_columns",
 ]
 
 ARTICULATORS = ("aperture", "width", "protrusion", "jaw")
-SPEECH_REGIONS = ("lip_out", "lip_in", "chin")
 COMPONENTS = 8
 """Principal components in the Frechet distance, as in EVALUATION and paper B."""
 
@@ -43,15 +48,6 @@ def articulators(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:
         except ValueError:  # the layout has no such marker
             columns.append(np.full(len(positions_mm), np.nan))
     return np.stack(columns, axis=1)
-
-
-def region_columns(capture: Capture, regions: Sequence[str] | None) -> IntArray:
-    """Return the columns of the markers of some regions; all when None, or when the layout has none there."""
-    every = np.arange(len(capture.names))
-    if regions is None:
-        return every
-    found = np.array([i for i, r in enumerate(capture.regions) if r in regions], dtype=np.int64)
-    return found if len(found) else every
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -156,11 +152,11 @@ def natural_of(training: TrainingSet) -> Natural:
     captures = [r.capture for r in training.recordings]
     speaking = [training.speaking(r) for r in training.recordings]
     frames = training.speech_frames_mm(remove_bias=False)
-    columns = region_columns(captures[0], SPEECH_REGIONS)
+    columns = region_columns(captures[0].regions, SPEECH_REGIONS)
     spans = [
         speech_span_s(r.utterance, training.phones.silence, SPEECH_MARGIN_S) for r in training.recordings
     ]
-    lips = natural_distribution(captures, training.rate_hz, [int(c) for c in columns], spans)
+    lips = natural_distribution(captures, training.rate_hz, columns, spans)
     face = natural_distribution(captures, training.rate_hz, None, spans)
     basis = training.basis(False, COMPONENTS)
     features = np.concatenate(

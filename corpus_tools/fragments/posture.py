@@ -9,26 +9,18 @@ import numpy as np
 
 from corpus_tools.cleaning import holding, phone_halves, recording_bias
 from corpus_tools.core import (
-    BoolArray,
+    SPEECH_REGIONS,
     Capture,
     FloatArray,
-    FrameFlag,
     Recording,
     Utterance,
     frozen,
+    region_columns,
     step,
 )
 from corpus_tools.speech import lip_pair_functionals
 
 __all__ = ["as_recorded", "bias_rms_mm", "posture_offsets_mm", "without_bias"]
-
-SPEECH_REGIONS = ("lip_out", "lip_in", "chin")
-
-
-def _measured(capture: Capture) -> BoolArray:
-    assert capture.flags is not None
-    kept = capture.flags & (FrameFlag.MEASURED | FrameFlag.FILLED | FrameFlag.DOUBTFUL)
-    return np.asarray(kept == FrameFlag.MEASURED)
 
 
 def posture_offsets_mm(spoken: Sequence[tuple[Capture, Utterance]], silence: str) -> dict[str, FloatArray]:
@@ -48,7 +40,7 @@ def posture_offsets_mm(spoken: Sequence[tuple[Capture, Utterance]], silence: str
         phone_halves(
             np.asarray(capture.positions_mm),
             capture.times_s,
-            _measured(capture),
+            capture.measured,
             [(p.start_s, p.end_s, p.text) for p in utterance.phones],
             silence,
         )
@@ -61,7 +53,7 @@ def posture_offsets_mm(spoken: Sequence[tuple[Capture, Utterance]], silence: str
 
 def bias_rms_mm(offsets_mm: Mapping[str, FloatArray], regions: Sequence[str]) -> dict[str, float]:
     """Return the size of every offset: the rms length over lips and chin (over all markers without them)."""
-    columns = [i for i, r in enumerate(regions) if r in SPEECH_REGIONS] or list(range(len(regions)))
+    columns = region_columns(regions, SPEECH_REGIONS)
     return {
         name: float(np.sqrt((np.asarray(offset)[columns] ** 2).sum(axis=1).mean()))
         for name, offset in offsets_mm.items()

@@ -10,7 +10,7 @@ from corpus_tools.methods.registry import (
     Variant,
     parse_variant,
 )
-from corpus_tools.methods.training import SPEECH_MARGIN_S, TrainingSet, phone_anchors_s, speech_span_s
+from corpus_tools.methods.training import SPEECH_MARGIN_S, TrainingSet, phone_anchors_s
 
 __all__ = [
     "CONTEXT_S",
@@ -26,6 +26,5 @@ __all__ = [
     "mean",
     "parse_variant",
     "phone_anchors_s",
-    "speech_span_s",
     "viseme_linear",
 ]

@@ -8,14 +8,15 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from corpus_tools.core import BoolArray, FloatArray, Recording, Utterance
+from corpus_tools.core import BoolArray, FloatArray, Recording, Utterance, speech_span_s
 from corpus_tools.fragments import build_inventory
 from corpus_tools.fragments.posture import without_bias
 from corpus_tools.speech import PhoneSet
 from corpus_tools.synthesis import PostureBasis, SelectionModel, prepare_selection
+from corpus_tools.synthesis.basis import principal_basis
 from corpus_tools.synthesis.lips import LipModel, lip_model
 
-__all__ = ["SPEECH_MARGIN_S", "TrainingSet", "phone_anchors_s", "speech_span_s"]
+__all__ = ["SPEECH_MARGIN_S", "TrainingSet", "phone_anchors_s"]
 
 T = TypeVar("T")
 
@@ -24,12 +25,6 @@ SPEECH_MARGIN_S = 0.12
 
 REST_ANCHOR_S = 0.15
 """How far from speech a silence has come to rest, s (our choice: about the time of a lip gesture)."""
-
-
-def speech_span_s(utterance: Utterance, silence: str, margin_s: float = 0.0) -> tuple[float, float]:
-    """Return start of the first and end of the last phone that is not silence, widened by a margin."""
-    spoken = [p for p in utterance.phones if p.text != silence]
-    return spoken[0].start_s - margin_s, spoken[-1].end_s + margin_s
 
 
 def phone_anchors_s(utterance: Utterance, silence: str) -> FloatArray:
@@ -131,10 +126,4 @@ def _principal(frames_mm: FloatArray, names: tuple[str, ...], n: int) -> Posture
     flat = frames_mm.reshape(len(frames_mm), -1)
     mean = flat.mean(axis=0)
     centred = flat - mean
-    values, vectors = np.linalg.eigh(centred.T @ centred / len(centred))
-    values = values[::-1].clip(min=0)
-    components = vectors[:, ::-1][:, :n].T
-    largest = np.abs(components).argmax(axis=1)
-    signs = np.sign(components[np.arange(len(components)), largest])
-    spread = max(float(values.sum()), np.finfo(float).tiny)
-    return PostureBasis(names, mean, components * signs[:, None], values[:n] / spread)
+    return principal_basis(names, mean, centred.T @ centred / len(centred), n)

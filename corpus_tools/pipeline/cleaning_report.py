@@ -47,7 +47,7 @@ def _gaps(raw: Capture, clean: Capture) -> dict[str, Any]:
         "fillers": ", ".join(str(f) for f in fillers if f),
         "filled_samples": int(((flags & FrameFlag.FILLED) > 0).sum()),
         "doubtful_samples": int(((flags & FrameFlag.DOUBTFUL) > 0).sum()),
-        "flagged_by_frame": [_round(v) for v in (flags & ~np.uint8(FrameFlag.MEASURED) > 0).mean(axis=1)],
+        "flagged_by_frame": [_round(v) for v in clean.flagged.mean(axis=1)],
     }
 
 

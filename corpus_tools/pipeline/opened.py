@@ -12,6 +12,7 @@ import numpy as np
 from corpus_tools.cleaning import neutral_pose
 from corpus_tools.config import Config, ConfigBase
 from corpus_tools.core import (
+    SPEECH_REGIONS,
     BoolArray,
     Capture,
     FloatArray,
@@ -20,6 +21,8 @@ from corpus_tools.core import (
     Recording,
     UnitInventory,
     Utterance,
+    region_columns,
+    speech_span_s,
 )
 from corpus_tools.fragments import build_inventory
 from corpus_tools.fragments.posture import as_recorded, bias_rms_mm, without_bias
@@ -169,16 +172,11 @@ def open_corpus(
     return _assemble(raw, recordings, config, scale_sd, offsets, progress)
 
 
-def _speech_span(recording: Recording, silence: str) -> tuple[float, float]:
-    spoken = [p for p in recording.utterance.phones if p.text != silence]
-    return spoken[0].start_s, spoken[-1].end_s
-
-
 def _silent(recording: Recording, silence: str) -> BoolArray:
     """Return the measured frames of silence, 0.1 s and more away from speech, (n_frames,)."""
     capture = recording.capture
     times = capture.times_s
-    low, high = _speech_span(recording, silence)
+    low, high = speech_span_s(recording.utterance, silence)
     assert capture.flags is not None
     measured = (capture.flags & FrameFlag.DOUBTFUL).max(axis=1) == 0
     return np.asarray(((times < low - 0.1) | (times > high + 0.1)) & measured)
@@ -212,12 +210,11 @@ def _assemble(
     model = prepare_selection(inventory, phones, n_components=config.selection.components)
     progress(0.95, "natural distribution")
     captures = [r.capture for r in recordings]
-    columns = [i for i, r in enumerate(captures[0].regions) if r in ("lip_out", "lip_in", "chin")]
     natural = natural_distribution(
         captures,
         rate_hz=config.alignment.rate_hz,
-        columns=columns or None,
-        spans_s=[_speech_span(r, phones.silence) for r in recordings],
+        columns=region_columns(captures[0].regions, SPEECH_REGIONS),
+        spans_s=[speech_span_s(r.utterance, phones.silence) for r in recordings],
     )
     lips = lip_model(recordings, phones, config.closure.components)
     neutral = neutral_pose(captures, _quiet(recordings, lips, phones.silence))

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from corpus_tools.core import BoolArray, Capture, FloatArray, Utterance
+from corpus_tools.core import BoolArray, Capture, FloatArray, Utterance, speech_span_s
 
 __all__ = [
     "COVER_TOLERANCE_S",
@@ -91,8 +91,7 @@ def motion_problem(
     if capture.rate_hz < LEAST_RATE_HZ:
         return f"it has {capture.rate_hz:g} frames per second; at least {LEAST_RATE_HZ:g} are needed."
     times = capture.times_s
-    spoken = [p for p in utterance.phones if p.text != silence]
-    low, high = spoken[0].start_s, spoken[-1].end_s
+    low, high = speech_span_s(utterance, silence)
     if len(times) < 2 or times[0] > low + COVER_TOLERANCE_S or times[-1] < high - COVER_TOLERANCE_S:
         return (
             f"its motion runs from {times[0]:.3f} to {times[-1]:.3f} s but its labels speak from {low:.3f} "

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from corpus_tools.core import Capture, CorpusError, FloatArray, MotionError, UnitInventory, frozen
 
-__all__ = ["JoinFeatures", "PostureBasis", "join_features", "posture_basis"]
+__all__ = ["JoinFeatures", "PostureBasis", "join_features", "posture_basis", "principal_basis"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,12 +96,29 @@ def posture_basis(
     if count < 2 or shift is None:
         raise CorpusError("The corpus has fewer than two frames without missing markers; clean it first.")
     mean = total / count
-    values, vectors = np.linalg.eigh(square / count - np.outer(mean, mean))
+    return principal_basis(names, mean + shift, square / count - np.outer(mean, mean), n)
+
+
+def principal_basis(
+    names: tuple[str, ...], mean_mm: FloatArray, covariance_mm2: FloatArray, n: int
+) -> PostureBasis:
+    """Return the first `n` principal components of postures with a mean and a covariance.
+
+    Parameters
+    ----------
+    names : tuple of str
+    mean_mm : (3 * n_markers,) mm
+    covariance_mm2 : (3 * n_markers, 3 * n_markers) mm2
+    n : int
+        Components kept; at most 3 * n_markers.
+    """
+    values, vectors = np.linalg.eigh(covariance_mm2)
+    values = values[::-1].clip(min=0)
     components = vectors[:, ::-1][:, :n].T
     largest = np.abs(components).argmax(axis=1)
-    components = components * np.sign(components[np.arange(len(components)), largest])[:, None]
-    spread = max(float(values.clip(min=0).sum()), np.finfo(float).tiny)
-    return PostureBasis(names, mean + shift, components, values[::-1][:n].clip(min=0) / spread)
+    signs = np.sign(components[np.arange(len(components)), largest])
+    spread = max(float(values.sum()), np.finfo(float).tiny)
+    return PostureBasis(names, mean_mm, components * signs[:, None], values[:n] / spread)
 
 
 def _whole_frames(capture: Capture, names: tuple[str, ...]) -> FloatArray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from corpus_tools.core import Capture, FloatArray, FrameFlag, IntArray, Join, Trajectory, frozen
+from corpus_tools.core import FLAGGED, Capture, FloatArray, IntArray, Join, Trajectory, frozen
 from corpus_tools.synthesis.pieces import AlignedPieces, Piece
 from corpus_tools.synthesis.resampling import resample_uniform
 
@@ -98,7 +98,7 @@ def _window_peaks(acceleration: FloatArray, width: int) -> FloatArray:
 def natural_distribution(
     captures: Sequence[Capture],
     rate_hz: float = 120.0,
-    columns: Sequence[int] | None = None,
+    columns: Sequence[int] | IntArray | None = None,
     spans_s: Sequence[tuple[float, float]] | None = None,
 ) -> NaturalDistribution:
     """Measure the accelerations of recorded speech, resampled as synthesis is.
@@ -170,12 +170,11 @@ def _rms(difference: FloatArray) -> float:
 
 def _flagged(left: Piece, right: Piece, frame: int, n_frames: float) -> float:
     """Return the share of samples of both pieces within half an overlap of a frame that are flagged."""
-    bad = np.uint8(FrameFlag.FILLED | FrameFlag.DOUBTFUL | FrameFlag.OUTLIER)
     reach, parts = round(0.5 * n_frames), []
     for piece in (left, right):
         first = min(max(frame - reach - piece.start, 0), len(piece.flags) - 1)
         last = max(min(frame + reach - piece.start, len(piece.flags) - 1), first)
-        parts.append((piece.flags[first : last + 1] & bad) > 0)
+        parts.append((piece.flags[first : last + 1] & FLAGGED) > 0)
     return float(np.concatenate(parts).mean())
 
 

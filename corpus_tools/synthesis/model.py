@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from corpus_tools.core import FloatArray, FrameFlag, IntArray, UnitInventory, frozen
+from corpus_tools.core import FloatArray, IntArray, UnitInventory, frozen
 from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
 
 __all__ = ["SHORTEST_S", "PhoneClasses", "SelectionModel", "prepare_selection"]
@@ -147,14 +147,12 @@ def _flagged_share(inventory: UnitInventory) -> FloatArray:
     """Share of flagged samples from the centre of each phone to that of the next; 0 where no frame lies."""
     centres = 0.5 * (inventory.starts_s + inventory.ends_s)
     share = np.zeros(inventory.n_phones)
-    bad = np.uint8(FrameFlag.FILLED | FrameFlag.DOUBTFUL | FrameFlag.OUTLIER)
     for index, recording in enumerate(inventory.recordings):
-        flags = recording.capture.flags
-        assert flags is not None
-        if not (flags & bad).any():
+        flagged = recording.capture.flagged
+        if not flagged.any():
             continue
         rows = slice(int(inventory.offsets[index]), int(inventory.offsets[index + 1]))
-        sums = np.concatenate([[0.0], np.cumsum(((flags & bad) > 0).mean(axis=1))])
+        sums = np.concatenate([[0.0], np.cumsum(flagged.mean(axis=1))])
         edges = np.searchsorted(recording.capture.times_s, centres[rows])
         frames = np.diff(edges)
         share[rows][:-1] = (sums[edges[1:]] - sums[edges[:-1]]) / np.maximum(frames, 1)

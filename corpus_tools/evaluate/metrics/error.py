@@ -7,10 +7,10 @@ from functools import partial
 
 import numpy as np
 
-from corpus_tools.core import FloatArray, IntArray
+from corpus_tools.core import SPEECH_REGIONS, FloatArray, IntArray
 from corpus_tools.evaluate.comparison import Comparison
 from corpus_tools.evaluate.metrics.registry import METRICS, Metric, mean_of_sentences, metric
-from corpus_tools.evaluate.natural import ARTICULATORS, SPEECH_REGIONS
+from corpus_tools.evaluate.natural import ARTICULATORS
 
 __all__ = ["STILL_MM", "correlation", "dtw_distance", "rms_error"]
 
