@@ -13,7 +13,7 @@ __all__ = ["join_facts", "join_line"]
 
 
 def join_facts(joins: Sequence[Join]) -> dict[str, Any]:
-    """Return how many joins have a peak acceleration above the natural 95th percentile, and the worst.
+    """Return how many joins peak above the 95th percentile of natural stretches, and the worst.
 
     Parameters
     ----------
@@ -46,6 +46,6 @@ def join_line(joins: Sequence[Join]) -> str:
         return f"{counted(facts['n'], 'join')}; there is too little recorded speech to compare them with."
     worst, n = facts["worst"], counted(facts["known"], "join")
     return (
-        f"{facts['above_p95']} of {n} above the natural 95th percentile of peak acceleration; "
+        f"{facts['above_p95']} of {n} above the 95th percentile of natural stretches in peak acceleration; "
         f"worst {worst['ratio']:.2f} x at {worst['phone']}, {worst['time_s']:.2f} s (joins.csv)"
     )

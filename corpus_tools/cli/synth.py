@@ -30,7 +30,7 @@ from corpus_tools.pipeline import (
     synthesise,
     write_synthesis,
 )
-from corpus_tools.render import EXPORTERS, check_exports, export_all, export_names
+from corpus_tools.render import EXPORTERS, check_exports, export_all, export_names, is_export_folder
 from corpus_tools.synthesis import StandIn, stand_ins, stand_ins_told
 
 __all__ = ["register"]
@@ -230,7 +230,11 @@ def synth(
             progress=lambda f, w: progress(share + (1 - share) * f, w),
         )
         provenance, before = corpus_provenance(opened), listed_files(out)
-        write_synthesis(out, synthesis, head, settings, provenance, request, extra if exports else None)
+        write_synthesis(
+            *(out, synthesis, head, settings, provenance, request),
+            exports=extra if exports else None,
+            replaceable=is_export_folder,
+        )
         removed = remove_stale(out, before)
     summary = _summary(synthesis, opened, settings, out)
     summary |= {"held_out": list(exclude), "removed": list(removed)}

@@ -7,7 +7,7 @@ import errno
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from corpus_tools.core.errors import OutputError
@@ -76,11 +76,14 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def atomic_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
+def atomic_folder(
+    path: str | os.PathLike[str], replaceable: Callable[[Path], bool] = lambda folder: False
+) -> Iterator[Path]:
     """Yield a temporary folder beside `path`; on success its files move into `path`, else nothing remains.
 
     Files of the same name in an existing folder are replaced, all of them or, after an error or Ctrl-C, none;
-    other files there are left alone.
+    other files there are left alone. A folder below it is replaced, as a whole, by one of the same name only
+    when ``replaceable(folder)`` says that it may be.
     """
     target = Path(path)
     check_writable(target)
@@ -92,7 +95,7 @@ def atomic_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         yield temporary
         with _alone(target.parent):
-            _move_all(temporary, target)
+            _move_all(temporary, target, replaceable)
     except OSError as error:
         raise _refusal(target, error) from error
     finally:
@@ -126,13 +129,16 @@ def _hidden(target: Path) -> str:
     return f".{target.name[:40]}."
 
 
-def _move_all(source: Path, target: Path) -> None:
+def _move_all(source: Path, target: Path, replaceable: Callable[[Path], bool]) -> None:
     """Move every file of `source` into `target`, or none of them."""
     existed = target.exists()
     target.mkdir(parents=True, exist_ok=True)
     names = sorted(item.name for item in source.iterdir())
     for name in names:
-        if (target / name).exists() and ((target / name).is_dir() or (source / name).is_dir()):
+        old_is, new_is = (target / name).is_dir(), (source / name).is_dir()
+        if not (target / name).exists() or not (old_is or new_is):
+            continue
+        if not (old_is and new_is and replaceable(target / name)):
             raise OutputError(f"Cannot write '{target / name}': it is there already; choose another folder.")
     old = Path(tempfile.mkdtemp(dir=source, prefix=".old."))
     try:

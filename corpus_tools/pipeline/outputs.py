@@ -146,6 +146,7 @@ def write_synthesis(
     provenance: Mapping[str, Any],
     request: Mapping[str, Any],
     exports: Callable[[Path], Mapping[str, Any]] | None = None,
+    replaceable: Callable[[Path], bool] = lambda folder: False,
 ) -> Path:
     """Write every file of a synthesis.
 
@@ -162,6 +163,8 @@ def write_synthesis(
     exports : callable, optional
         ``exports(folder)`` adds files of its own to those that stand there already and returns, by name, what
         is to be known of them; they are listed in the manifest with all others.
+    replaceable : callable, optional
+        As of :func:`~corpus_tools.core.files.atomic_folder`, for folders that exports make.
 
     Raises
     ------
@@ -169,7 +172,7 @@ def write_synthesis(
         The folder cannot be written; nothing remains of the attempt.
     """
     utterance = synthesis.utterance
-    with atomic_folder(folder) as out:
+    with atomic_folder(folder, replaceable) as out:
         write_motion(out / "motion.npz", synthesis.trajectory)
         _write_mesh(out / "mesh.npz", head, synthesis)
         write_wav(out / "speech.wav", utterance.audio or _silence(utterance.duration_s))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,7 @@ from corpus_tools.render.film import write_film, write_frames
 from corpus_tools.render.probe import probe_offscreen
 from corpus_tools.render.strip import write_strip
 
-__all__ = ["EXPORTERS", "Exporter", "check_exports", "export_all", "export_names"]
+__all__ = ["EXPORTERS", "Exporter", "check_exports", "export_all", "export_names", "is_export_folder"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +38,15 @@ class Exporter:
         Raises before any work what would keep it from working here.
     folder : str
         Name of the folder that it makes; empty when it writes files only.
+    in_folder : str
+        Pattern of the names of the files in it: a folder that holds nothing else may be replaced.
     """
 
     summary: str
     write: Callable[[Path, Synthesis, Head, ConfigBase, Progress], dict[str, Any]]
     check: Callable[[], object] = lambda: None
     folder: str = ""
+    in_folder: str = ""
 
 
 def _can_draw() -> None:
@@ -58,7 +62,12 @@ def _can_film() -> None:
 
 EXPORTERS: Registry[Exporter] = Registry("export")
 EXPORTERS.add("mp4", Exporter("The head speaking, with its sound: film.mp4.", write_film, _can_film))
-EXPORTERS.add("frames", Exporter("The pictures of the film as PNG files.", write_frames, _can_draw, "frames"))
+EXPORTERS.add(
+    "frames",
+    Exporter(
+        "The pictures of the film as PNG files.", write_frames, _can_draw, "frames", r"frame-\d{5,}\.png"
+    ),
+)
 EXPORTERS.add(
     "strip",
     Exporter(
@@ -106,6 +115,17 @@ def export_names(given: str | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
+def is_export_folder(folder: Path) -> bool:
+    """Say whether a folder is what an export made, or empty: no file in it is of another name."""
+    patterns = [e.in_folder for e in EXPORTERS.values() if e.folder == folder.name]
+    if folder.is_symlink() or not folder.is_dir() or not patterns:
+        return False
+    return all(
+        path.is_file() and not path.is_symlink() and any(re.fullmatch(p, path.name) for p in patterns)
+        for path in folder.iterdir()
+    )
+
+
 def check_exports(names: Iterable[str], out: Path) -> None:
     """Raise what would keep exports from working, before anything is computed.
 
@@ -114,15 +134,16 @@ def check_exports(names: Iterable[str], out: Path) -> None:
     MissingExtraError
         An extra or a system package is missing; the sentence names it.
     OutputError
-        A folder that would be made is there already: what lies in it is not replaced.
+        A folder that would be made is there already, and something else than such an export lies in it.
     """
     for name in names:
         exporter = EXPORTERS[name]
         exporter.check()
-        if exporter.folder and (out / exporter.folder).exists():
+        folder = out / exporter.folder
+        if exporter.folder and folder.exists() and not is_export_folder(folder):
             raise OutputError(
-                f"'{out / exporter.folder}' is there already, and what lies in it is not replaced; "
-                f"remove it, or choose another folder for the export '{name}'."
+                f"'{folder}' is there already, and something in it is not of an earlier export '{name}'; "
+                "remove it, or choose another folder for --out."
             )
 
 

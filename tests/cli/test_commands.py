@@ -54,7 +54,7 @@ def test_synth_writes_the_whole_folder_and_leaves_the_corpus_alone(
     assert np.isfinite(mesh["vertices_mm"]).all()
     assert mesh["faces"].shape[1] == 3
     np.testing.assert_allclose(np.diff(motion["times_s"]), 1 / 120)
-    assert re.search(r"^\d+ of \d+ joins? above the natural 95th percentile", out, re.MULTILINE)
+    assert re.search(r"^\d+ of \d+ joins? above the 95th percentile of natural stretches", out, re.MULTILINE)
     rows = list(csv.DictReader((tmp_path / "o/joins.csv").read_text().splitlines()))
     assert tuple((tmp_path / "o/joins.csv").read_text().splitlines()[0].split(",")) == JOIN_COLUMNS
     assert len(rows) == summary["joins"] == summary["join_peaks"]["n"]

@@ -13,7 +13,15 @@ from corpus_tools.config import Config, config_with
 from corpus_tools.core import InputError, OutputError
 from corpus_tools.io import MOTION_WRITERS, read_markers
 from corpus_tools.pipeline import prepare_head, synthesise, write_synthesis
-from corpus_tools.render import EXPORTERS, export_all, export_names, probe, probe_offscreen
+from corpus_tools.render import (
+    EXPORTERS,
+    check_exports,
+    export_all,
+    export_names,
+    is_export_folder,
+    probe,
+    probe_offscreen,
+)
 from corpus_tools.render.exports import MOTION_FILES
 
 SMALL = config_with(Config(), film__width=128, film__height=96, film__rate_hz=5.0, film__strip_frames=3)
@@ -144,11 +152,40 @@ def synth(capsys, *args):
 )
 def test_a_mistake_is_told_before_the_work(capsys, simulated_corpus, tmp_path, word, args):
     (tmp_path / "o/frames").mkdir(parents=True)
+    (tmp_path / "o/frames/notes.txt").write_text("mine")
     code, error = synth(capsys, simulated_corpus, "--utterance", "x", "--out", tmp_path / "o", *args)
     assert code == 2
     assert word in error
     assert len(error.splitlines()) == 1
-    assert sorted(p.name for p in tmp_path.rglob("*")) == ["frames", "o"]
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["frames", "notes.txt", "o"]
+
+
+def test_frames_of_an_earlier_run_are_replaced_as_a_whole_and_nothing_else_is(made, tmp_path):
+    synthesis, head = made
+    frames = tmp_path / "frames"
+
+    def again():
+        def exports(out):
+            return export_all(["frames"], out, synthesis, head, SMALL)
+
+        check_exports(["frames"], tmp_path)
+        write_synthesis(tmp_path, synthesis, head, SMALL, {}, {}, exports, is_export_folder)
+        return {p.name: p.read_bytes() for p in frames.iterdir()}
+
+    first = again()
+    (frames / "frame-99999.png").write_text("of a longer sentence")
+    (frames / "frame-00000.png").write_text("of another sentence")
+    assert again() == first
+    for other in ("notes.txt", "frame-1.png", "frame-00000.png.txt"):
+        (frames / other).write_text("mine")
+        with pytest.raises(OutputError, match="frames' is there already"):
+            again()
+        with pytest.raises(OutputError, match="frames': it is there already"):
+            write(tmp_path, made, ["frames"])
+        assert (frames / other).read_text() == "mine"
+        (frames / other).unlink()
+    assert not is_export_folder(tmp_path)
+    assert not list(tmp_path.glob(".*"))
 
 
 def test_a_missing_extra_and_a_machine_that_cannot_draw_are_told_before_the_work(

@@ -9,7 +9,7 @@ from typing import Any
 from corpus_tools.core import WorkbenchError
 from corpus_tools.pipeline import OpenCorpus, corpus_provenance
 from workbench.actions.corpora import CorpusCache
-from workbench.actions.export import export_config, replay_command
+from workbench.actions.export import export_config, export_target, replay_command
 from workbench.actions.jobs import Job, LatestJob
 from workbench.state import (
     EDITABLE,
@@ -68,7 +68,7 @@ class Desk:
         self._checks: LatestJob[CorpusFacts] = LatestJob(
             deliver, self._checked, self._not_checked, self._checking
         )
-        self._exports: LatestJob[Path] = LatestJob(deliver, self._exported, self._not_exported)
+        self._exports: LatestJob[tuple[Path, bool]] = LatestJob(deliver, self._exported, self._not_exported)
         self._on_export: Callable[[str, str, str], None] = lambda kind, text, where: None
         session.param.watch(self._recompute, ["corpus", *EDITABLE])
         session.param.watch(self._after, ["result", "kept", "side"])
@@ -262,7 +262,11 @@ class Desk:
         self.session.param.update(beside=[], message=sentence)
 
     def export(
-        self, path: str | Path, done: Callable[[str, str, str], None], beside: Path | None = None
+        self,
+        path: str | Path,
+        done: Callable[[str, str, str], None],
+        beside: Path | None = None,
+        replace: bool = False,
     ) -> None:
         """Write the config in the background.
 
@@ -271,10 +275,12 @@ class Desk:
         path : path
             File to write.
         done : callable
-            ``done(kind, text, where)``: ("ok", the line that replays it, the file written) or
-            ("err", one sentence, "").
+            ``done(kind, text, where)``: ("ok", the line that replays it, the file written),
+            ("there", one sentence, the config that was not replaced) or ("err", one sentence, "").
         beside : path, optional
             Folder that a path which is not absolute counts from.
+        replace : bool
+            Replace a config that is there.
         """
         self._on_export = done
         corpus = self.session.corpus
@@ -283,15 +289,22 @@ class Desk:
             done("err", told, "")
             return
 
-        def work(job: Job) -> Path:
+        def work(job: Job) -> tuple[Path, bool]:
             provenance = corpus_provenance(corpus)
             job.check()
-            return export_config(self.session, path, provenance, self.cache.root, beside)[0]
+            target = export_target(path, self.cache.root, beside)
+            if target.exists() and not replace:
+                return target, False
+            return export_config(self.session, target, provenance, self.cache.root)[0], True
 
         self._exports.submit(work)
 
-    def _exported(self, number: int, path: Path) -> None:
-        self._on_export("ok", replay_command(self.session, path), str(path))
+    def _exported(self, number: int, made: tuple[Path, bool]) -> None:
+        path, written = made
+        if written:
+            self._on_export("ok", replay_command(self.session, path), str(path))
+        else:
+            self._on_export("there", f"'{path}' is there already; export again to replace it.", str(path))
 
     def _not_exported(self, number: int, sentence: str) -> None:
         self._on_export("err", sentence, "")

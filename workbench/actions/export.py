@@ -20,6 +20,7 @@ __all__ = [
     "cache_folder",
     "export_config",
     "export_stem",
+    "export_target",
     "exports_beside",
     "replay_command",
     "suggested_path",
@@ -110,6 +111,18 @@ def _refuse_foreign(path: Path) -> None:
         ) from None
 
 
+def export_target(path: str | Path, root: Path | None = None, beside: Path | None = None) -> Path:
+    """Return the file that a config is written to; parameters and errors as of :func:`export_config`."""
+    if not str(path).strip():
+        raise InputError("No file was given; type where the config is to be written.")
+    text = str(path).strip()
+    target = inside_root(text if text.startswith("~") else Path(beside or "") / text, root)
+    if not target.suffix and not target.is_dir():
+        target = target.with_suffix(".toml")
+    _refuse_foreign(target)
+    return target
+
+
 def export_config(
     session: Session,
     path: str | Path,
@@ -123,7 +136,7 @@ def export_config(
     ----------
     session : Session
     path : path
-        A file; ``.toml`` is added when there is no suffix. Only another config is replaced.
+        A file; ``.toml`` is added when there is no suffix. Another config is replaced, nothing else is.
     provenance : mapping, optional
         Corpus and code hashes to write beside the values.
     root : path, optional
@@ -141,13 +154,7 @@ def export_config(
     OutputError, InputError, ConfigError
         The file cannot be written there; one sentence says why.
     """
-    if not str(path).strip():
-        raise InputError("No file was given; type where the config is to be written.")
-    text = str(path).strip()
-    target = inside_root(text if text.startswith("~") else Path(beside or "") / text, root)
-    if not target.suffix and not target.is_dir():
-        target = target.with_suffix(".toml")
-    _refuse_foreign(target)
+    target = export_target(path, root, beside)
     data = session.config.model_dump(by_alias=True, mode="json")
     data["provenance"] = dict(provenance or {})
     config = config_from_dict(data, str(target))

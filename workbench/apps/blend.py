@@ -205,7 +205,7 @@ class BlendPage:
         beside = exports_beside(corpus.description.folder) if corpus is not None else None
         return self._export_folder or beside
 
-    def _export(self, path: str, done: Callable[[str, str, str], None]) -> None:
+    def _export(self, path: str, replace: bool, done: Callable[[str, str, str], None]) -> None:
         def said(kind: str, text: str, where: str) -> None:
             done(kind, text, where)
             self._suggest()
@@ -213,7 +213,7 @@ class BlendPage:
         if path == self.export.suggested:  # it may have been written since, by another tab
             self._suggest()
             path = self.export.suggested
-        self.desk.export(path, said, self.exports)
+        self.desk.export(path, said, self.exports, replace)
 
     def _suggest(self, *events: Any) -> None:
         """Suggest a file for what is spoken that does not exist yet."""

@@ -42,8 +42,8 @@ function joinText(join) {
   const { ratio, percentile, other } = join;
   let place = "peak acceleration unknown";
   if (ratio !== null) {
-    const below = percentile === null ? "" : `, above ${percentile.toFixed(0)} % of the peaks in natural speech`;
-    place = `peak acceleration ${ratio.toFixed(2)} × the natural 95th percentile${below}`;
+    const below = percentile === null ? "" : `, above ${percentile.toFixed(0)} % of them`;
+    place = `peak acceleration ${ratio.toFixed(2)} × the 95th percentile of natural stretches${below}`;
     if (other !== null && other !== undefined) place += ` (setting A: ${other.toFixed(2)})`;
   }
   return `join at ${join.phone}, ${join.time.toFixed(3)} s · overlap ${join.overlap.toFixed(3)} s · ${place}`;

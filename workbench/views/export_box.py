@@ -20,9 +20,9 @@ def export_html(kind: str, text: str, where: str = "") -> str:
 
     Parameters
     ----------
-    kind : "ok", "err" or ""
+    kind : "ok", "there", "err" or ""
     text : str
-        The line that replays it; or why it was not written.
+        The line that replays it; or why it was not written ("there": another config is in its place).
     where : str
         The file that was written.
     """
@@ -33,7 +33,7 @@ def export_html(kind: str, text: str, where: str = "") -> str:
         'aria-label="Put this away">✕</button>'
     )
     if kind != "ok":
-        said = notice_html("err", "The config was not written", why=text)
+        said = notice_html("warn" if kind == "there" else "err", "The config was not written", why=text)
         return f'<div class="export">{close}{said}</div>'
     line, place = html.escape(text), html.escape(where)
     rows = min(14, 2 + len(text) // 30)
@@ -50,20 +50,22 @@ def export_html(kind: str, text: str, where: str = "") -> str:
 class ExportBox(pn.viewable.Viewer):
     """File field, export button, command line with a copy button.
 
+    A config that is in the place of the file is replaced at the second press only.
+
     Parameters
     ----------
     controls : Controls
     on_export : callable
-        ``on_export(path, done)`` with ``done(kind, text, where)``.
+        ``on_export(path, replace, done)`` with ``done(kind, text, where)``.
     """
 
     def __init__(
         self,
         controls: Controls,
-        on_export: Callable[[str, Callable[[str, str, str], None]], None],
+        on_export: Callable[[str, bool, Callable[[str, str, str], None]], None],
         **params: Any,
     ) -> None:
-        self._run, self.suggested = on_export, ""
+        self._run, self.suggested, self._asked = on_export, "", ""
         self.kind = self.text = self.where = ""
         super().__init__(**params)
         self.path = text_field(controls, "Config file", margin=(10, 4, 4, 12))
@@ -82,8 +84,10 @@ class ExportBox(pn.viewable.Viewer):
 
     def submit(self) -> None:
         """Export to the file of the field."""
-        self.export.disabled = True
-        self._run(self.path.value_input or self.path.value or "", self.show)
+        path = self.path.value_input or self.path.value or ""
+        replace = self.kind == "there" and path == self._asked
+        self.export.disabled, self._asked = True, path
+        self._run(path, replace, self.show)
 
     def show(self, kind: str, text: str, where: str = "") -> None:
         """Show the outcome of an export."""

@@ -32,7 +32,7 @@ def _row(entry: Entry, here: bool) -> str:
 def history_html(session: Session) -> str:
     """Return the latest states, the newest first; a click goes back to one.
 
-    The number is the worst join of the state: peak acceleration over the natural 95th percentile.
+    The number is the worst join: peak acceleration over the 95th percentile of natural stretches.
     """
     history = session.history
     if not history.entries:
@@ -43,7 +43,8 @@ def history_html(session: Session) -> str:
         '<div class="rows history"><table>'
         '<colgroup><col style="width:64px"><col><col style="width:44px"></colgroup>'
         '<thead><tr><th>When</th><th>What</th><th class="num" '
-        'title="Worst join: peak acceleration over the natural 95th percentile">Worst</th></tr></thead>'
+        'title="Worst join: peak acceleration over the 95th percentile of natural stretches">Worst</th>'
+        "</tr></thead>"
         f'<tbody data-list="history" role="listbox" aria-label="States of this session">{"".join(rows)}'
         "</tbody></table></div></section>"
     )
@@ -65,7 +66,7 @@ def compare_html(session: Session) -> str:
     if not difference:
         told = "<p>A and B are equal: change a setting.</p>"
     else:
-        title = "Peak acceleration of the worst join over the natural 95th percentile"
+        title = "Peak acceleration of the worst join over the 95th percentile of natural stretches"
         told = (
             f'<dl><dt title="{title}">Worst join</dt><dd title="{title}">A {_worst(a)} → '
             f'<span class="acc">B {_worst(b)}</span></dd>'

@@ -37,7 +37,10 @@ def _verdict(ratio: float | None) -> str:
     if ratio is None:
         return ""
     if ratio > 1.0:
-        return '<span class="end badge warn">▲ above p95</span>'
+        return (
+            '<span class="end badge warn" title="Above the 95th percentile of natural stretches">'
+            "▲ above p95</span>"
+        )
     return '<span class="end badge ok">✓ natural</span>'
 
 
@@ -50,7 +53,7 @@ def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -
     if join is None:
         return "<dt>Join</dt><dd>none: the sentence begins here</dd>"
     ratio = join["ratio"]
-    peak = "unknown" if ratio is None else f"{ratio:.2f} × natural p95"
+    peak = "unknown" if ratio is None else f"{ratio:.2f} × p95 of natural stretches"
     frames = round(join["overlap"] * frames_hz)
     over, inertial = f"{join['overlap']:.3f} s, {counted(frames, 'frame')}", join["inertial"]
     if inertial:

@@ -10,6 +10,8 @@ from corpus_tools.core import ConfigError, InputError
 from corpus_tools.synthesis import curve_through
 from workbench.actions import CorpusCache, Desk, export_config
 from workbench.state import SETTINGS, Session, Stages, aperture_curves, fragment_details, joins_data, score
+from workbench.views.controls import Controls
+from workbench.views.export_box import ExportBox
 
 BLEND = ("blend", "animate")
 
@@ -321,6 +323,35 @@ def test_export_without_a_corpus_says_what_to_do(desk_of, tmp_path):
     assert said[0][0] == "err"
     assert "open a corpus" in said[0][1]
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_config_that_is_there_is_replaced_when_asked_again(desk_of, corpus_folder, tmp_path):
+    desk, loop = desk_of()
+    desk.open(corpus_folder)
+    loop.until(lambda: desk.session.result is not None)
+    path, told = tmp_path / "mine.toml", []
+
+    def export(typed, replace, done):
+        desk.export(typed, lambda *said: (done(*said), told.append(said[0])), tmp_path, replace)
+
+    def press(typed="mine", expected="ok"):
+        n = len(told)
+        box.path.value = typed
+        box.submit()
+        loop.until(lambda: len(told) > n)
+        assert told[-1] == expected
+        return path.read_text()
+
+    box = ExportBox(Controls(desk.session), export)
+    first = press()
+    desk.session.overlap_s = 0.05
+    assert press(expected="there") == first
+    assert "mine.toml" in box.text
+    assert press("another") == first  # the question was about another file
+    assert press(expected="there") == first
+    assert press() != first
+    desk.session.overlap_s = 0.06
+    press(expected="there")  # and anew
 
 
 def test_a_value_out_of_range_is_refused_by_the_config(session, tmp_path):
