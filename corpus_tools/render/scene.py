@@ -28,6 +28,10 @@ PART_STYLES: dict[str, dict[str, Any]] = {
 OTHER_STYLE: dict[str, Any] = {"color": "#c8c8c8", "ambient": 0.3, "diffuse": 0.7}
 VIEWS = {"front": (0.0, 0.0), "three-quarter": (35.0, 4.0), "side": (88.0, 0.0)}
 BACKGROUND = "#e9ecef"
+VIEW_ANGLE_DEG = 20.0
+OVER, BELOW = 0.04, 0.13
+"""Ground above the crown, and below the chin at rest, as shares of the picture's height (our choice: an open
+jaw stays inside, and where a neck ends is out of sight)."""
 
 
 def scene(
@@ -51,7 +55,7 @@ def scene(
     size : (int, int)
         Width and height, pixels.
     zoom_mm : float, mm
-        Height of what is shown, around the mouth; the whole face when 0.
+        Height of what is shown, around the mouth; from above the crown to below the chin when 0.
     markers : bool
         Show the marker vertices as dots.
 
@@ -100,16 +104,14 @@ def _light_and_aim(plotter: pv.Plotter, mesh: Mesh, view: tuple[float, float], z
     """Put the camera before the face, from the rest pose so that it does not shake; three lights."""
     import pyvista as pv
 
-    centre, height = _frame(mesh, zoom_mm)
     around, above = np.radians(view)
     direction = np.array([np.sin(around) * np.cos(above), np.sin(above), np.cos(around) * np.cos(above)])
-    angle = 20.0
-    distance = 0.5 * height / np.tan(np.radians(angle / 2))
+    centre, distance = _stand(mesh, zoom_mm, direction)
     camera = plotter.camera
     camera.position = tuple(centre + distance * direction)
     camera.focal_point = tuple(centre)
     camera.up = (0.0, 1.0, 0.0)
-    camera.view_angle = angle
+    camera.view_angle = VIEW_ANGLE_DEG
     plotter.reset_camera_clipping_range()
     for place, strength in (((-0.5, 0.7, 1.0), 0.75), ((0.9, 0.2, 0.8), 0.35), ((0.0, -0.8, 0.6), 0.12)):
         light = pv.Light(
@@ -121,16 +123,24 @@ def _light_and_aim(plotter: pv.Plotter, mesh: Mesh, view: tuple[float, float], z
         plotter.add_light(light)
 
 
-def _frame(mesh: Mesh, zoom_mm: float) -> tuple[FloatArray, float]:
-    """Return the point to look at and the height to show, mm."""
+def _stand(mesh: Mesh, zoom_mm: float, direction: FloatArray) -> tuple[FloatArray, float]:
+    """Return the point to look at, mm, and how far from it the camera stands, mm."""
+    half = float(np.tan(np.radians(VIEW_ANGLE_DEG / 2)))
     if zoom_mm > 0 and len(mesh.lip_pairs):
-        return mesh.vertices_mm[mesh.lip_pairs.ravel()].mean(axis=0), zoom_mm
-    if len(mesh.markers) >= 4:
-        points = mesh.vertices_mm[list(mesh.markers.values())]
-        low, high = points.min(axis=0), points.max(axis=0)
-        return 0.5 * (low + high) + [0.0, 0.08 * (high[1] - low[1]), 0.0], 1.6 * float(high[1] - low[1])
-    low, high = mesh.vertices_mm.min(axis=0), mesh.vertices_mm.max(axis=0)
-    return 0.5 * (low + high), 1.2 * float(high[1] - low[1])
+        return mesh.vertices_mm[mesh.lip_pairs.ravel()].mean(axis=0), 0.5 * zoom_mm / half
+    skin = mesh.vertices_mm[mesh.part_mask("skin")] if "skin" in mesh.part_names else mesh.vertices_mm
+    marked = mesh.vertices_mm[list(mesh.markers.values())] if len(mesh.markers) >= 4 else skin
+    head = skin[skin[:, 1] >= marked[:, 1].min()]
+    centre = 0.5 * (head.min(axis=0) + head.max(axis=0))
+    up = np.array([0.0, 1.0, 0.0]) - direction[1] * direction
+    up /= np.linalg.norm(up)
+    # nothing of the head may be higher in the picture than `over`, and no marker lower than `under`, in the
+    # perspective of a camera at `distance` that is raised by `rise`: two bounds that are linear in both
+    over, under = half * (1 - 2 * OVER), half * (1 - 2 * BELOW)
+    top = float(((head - centre) @ (up + over * direction)).max())
+    low = float(((marked - centre) @ (under * direction - up)).max())
+    distance = (top + low) / (over + under)
+    return np.asarray(centre + (top - over * distance) * up), distance
 
 
 def _png(picture: npt.NDArray[np.uint8]) -> bytes:

@@ -8,8 +8,16 @@ import pyvista as pv
 from PIL import Image
 
 from corpus_tools.core import Mesh
-from corpus_tools.mesh import bundled_head, bundled_morph_mm
-from corpus_tools.render import VIEWS, drawn_part, part_surface, probe_offscreen, scene, snapshot
+from corpus_tools.mesh import bundled_head, bundled_morph_mm, level_neck, neck_rim
+from corpus_tools.render import (
+    VIEWS,
+    MovingHead,
+    drawn_part,
+    part_surface,
+    probe_offscreen,
+    scene,
+    snapshot,
+)
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +73,23 @@ def test_scene_has_one_actor_a_part_and_dots_on_request(head):
         assert set(plotter.actors) == {*head.part_names, "markers"}
     finally:
         plotter.close()
+
+
+@pytest.mark.parametrize("view", list(VIEWS))
+@pytest.mark.parametrize("name", ["base", "baby", "cartoon"])
+def test_crown_and_open_jaw_are_inside_and_the_end_of_the_neck_is_not(name, view):
+    mesh, (width, height) = bundled_head(name), (160, 90)
+    skin = mesh.vertices_mm[mesh.part_mask("skin")]
+    chin = min((mesh.vertices_mm[v] for v in mesh.markers.values()), key=lambda p: p[1])
+    with MovingHead(mesh, mesh.vertices_mm, size=(width, height), view=view) as moving:
+        above = moving.on_screen(skin[skin[:, 1] >= chin[1]])
+        jaw = moving.on_screen(chin - [0.0, 12.0, 0.0])[0]
+        end = moving.on_screen(level_neck(mesh).vertices_mm[neck_rim(mesh)])
+    assert above[:, 1].min() == pytest.approx(0.04 * height, abs=0.5)
+    assert (above[:, 0] > 0).all()
+    assert (above[:, 0] < width).all()
+    assert 0.8 * height < jaw[1] < 0.97 * height
+    assert (end[:, 1] > height).all()
 
 
 def test_camera_does_not_follow_the_motion(head):

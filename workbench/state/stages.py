@@ -94,7 +94,7 @@ class Result:
 
     @property
     def ratios(self) -> tuple[float, ...]:
-        """Peak acceleration of each join over the 95th percentile of natural stretches, before lips are closed."""
+        """Peak acceleration of each join over that of natural stretches (95th percentile), lips open."""
         return self.trajectory.peak_ratios
 
     @property
