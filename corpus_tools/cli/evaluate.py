@@ -99,7 +99,7 @@ def _tell_fold(number: int, n: int) -> None:
 
 def _about(source: CorpusSource, how: str, variants: Sequence[Variant], seed: int) -> dict[str, Any]:
     return {
-        "corpus": source.description.name or source.description.folder.name,
+        "corpus": source.description.name,
         "split": how,
         "seed": seed,
         "methods": {v.label: {**v.method.settings, **v.changes} for v in variants},

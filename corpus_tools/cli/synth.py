@@ -95,8 +95,9 @@ def _as_row(stand_in: StandIn) -> dict[str, Any]:
     }
 
 
-def _summary(synthesis: Synthesis, opened: OpenCorpus, settings: ConfigBase, out: Path) -> dict[str, Any]:
-    missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
+def _summary(
+    synthesis: Synthesis, missing: Sequence[StandIn], opened: OpenCorpus, settings: ConfigBase, out: Path
+) -> dict[str, Any]:
     return {
         "out": str(out),
         "utterance": synthesis.utterance.name,
@@ -113,7 +114,9 @@ def _summary(synthesis: Synthesis, opened: OpenCorpus, settings: ConfigBase, out
     }
 
 
-def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus, labelled: bool) -> None:
+def _tell(
+    summary: dict[str, Any], missing: Sequence[StandIn], n_phones: int, opened: OpenCorpus, labelled: bool
+) -> None:
     """Print for people what came out, and what they would not see at once."""
     fragments = summary["fragments"]
     say(
@@ -121,9 +124,8 @@ def _tell(summary: dict[str, Any], synthesis: Synthesis, opened: OpenCorpus, lab
         f"from {counted(len(fragments), 'fragment')} "
         f"({', '.join(fragments)}) in {summary['out']}"
     )
-    say(join_line(synthesis.trajectory.joins))
-    missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
-    most, sentences = stand_ins_told(missing, len(synthesis.utterance.labels) - 1)
+    say(join_line(summary["join_peaks"]))
+    most, sentences = stand_ins_told(missing, n_phones - 1)
     for sentence in filter(None, (most, *sentences)):
         say(f"▲ {sentence}")
     for pin, ban in summary["banned_pins"]:
@@ -236,9 +238,10 @@ def synth(
             replaceable=is_export_folder,
         )
         removed = remove_stale(out, before)
-    summary = _summary(synthesis, opened, settings, out)
+    missing = stand_ins(synthesis.selection, target, opened.phones)
+    summary = _summary(synthesis, missing, opened, settings, out)
     summary |= {"held_out": list(exclude), "removed": list(removed)}
-    _tell(summary, synthesis, opened, labels is not None)
+    _tell(summary, missing, len(target.phones), opened, labels is not None)
     if json_:
         emit_json(summary)
 

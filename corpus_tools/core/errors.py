@@ -122,13 +122,12 @@ class NoUnitError(SynthesisError):
             super().__init__(f"No unit may speak {names}: those that could are {why}; {advice}{other}.")
             return
         tried, advice = (
-            (", not even by viseme class", "a wider backoff")
+            (", not even by viseme class", "choose words without it")
             if by_class
-            else ("", "backoff to viseme classes")
+            else ("", "allow backoff to viseme classes")
         )
         super().__init__(
-            f"No unit of the corpus covers {names}{tried}: "
-            f"record a sentence that holds it, or allow {advice}."
+            f"No unit of the corpus covers {names}{tried}: record a sentence that holds it, or {advice}."
         )
 
 

@@ -40,7 +40,11 @@ COMPONENTS = 8
 
 
 def articulators(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:
-    """Return lip aperture, width, protrusion and jaw, (n_frames, 4) mm; NaN where a layout lacks a marker."""
+    """Return lip aperture, width, protrusion and jaw, (n_frames, 4) mm.
+
+    NaN in frames that miss a marker of it (the aperture: any marker). Width and jaw are NaN throughout where
+    the layout lacks one of their two markers; aperture and protrusion are 0 where it has no lips.
+    """
     columns = []
     for measure in (lip_aperture_mm, lip_width_mm, lip_protrusion_mm, jaw_mm):
         try:

@@ -123,10 +123,6 @@ def _ratios(table: Table, metric: str, methods: Sequence[str]) -> str:
     )
 
 
-def _against(table: Table, methods: Sequence[str]) -> str:
-    return "".join(_ratios(table, m, methods) for m in _RATIOS) if len(methods) > 1 else ""
-
-
 def _figure(table: Table, name: str, methods: Sequence[str]) -> str:
     """Return one metric of all methods, natural speech as a line where it is not simply perfect."""
     metric = METRICS[name]

@@ -1,7 +1,7 @@
 """Fragments of captured speech: the index of all units, cutting, coverage and views by kind."""
 
 from corpus_tools.fragments.band import natural_band
-from corpus_tools.fragments.coverage import CoverageReport, UtteranceCoverage, coverage, missing_diphones
+from corpus_tools.fragments.coverage import CoverageReport, UtteranceCoverage, coverage
 from corpus_tools.fragments.cutting import cut_fragment
 from corpus_tools.fragments.inventory import (
     build_inventory,
@@ -23,7 +23,6 @@ __all__ = [
     "diphone_keys",
     "diphone_rows",
     "find_spans",
-    "missing_diphones",
     "natural_band",
     "phone_codes",
     "recording_mask",

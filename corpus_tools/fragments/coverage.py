@@ -12,7 +12,7 @@ import numpy as np
 from corpus_tools.core import InputError, IntArray, UnitInventory, Utterance, frozen
 from corpus_tools.fragments.inventory import diphone_keys, diphone_rows, phone_codes, recording_mask
 
-__all__ = ["CoverageReport", "UtteranceCoverage", "coverage", "missing_diphones"]
+__all__ = ["CoverageReport", "UtteranceCoverage", "coverage"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,14 +87,6 @@ class CoverageReport:
                 for u in self.utterances
             ],
         }
-
-
-def missing_diphones(
-    inventory: UnitInventory, phones: Sequence[str], exclude: Iterable[str] = ()
-) -> tuple[tuple[str, str], ...]:
-    """Name the diphones of `phones` that no recording outside `exclude` holds, once each, in order."""
-    covered = _covered(inventory, phones, exclude)
-    return _names_of_missing(phones, covered)
 
 
 def _covered(inventory: UnitInventory, phones: Sequence[str], exclude: Iterable[str]) -> list[bool]:

@@ -32,8 +32,6 @@ CLASS_SPREAD = np.array([1.0, 1.0, 1.0, 1.5])
 PHONE_SPREAD = np.array([0.7, 0.7, 0.7, 0.7])
 """How far classes lie from the prior, and phones from their class: logs, and targets in sd (our choice)."""
 
-_FAR_S = 60.0
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Fitted:
@@ -48,8 +46,8 @@ class _Fitted:
 
 def _problem(times_s: FloatArray, anchors_s: FloatArray, kind: IntArray) -> DominanceProblem:
     """Return distances of frames to where each phone is at its target; no distance inside a rest."""
-    early = np.clip(anchors_s[:, 0], -_FAR_S, None) - times_s[:, None]
-    late = times_s[:, None] - np.clip(anchors_s[:, 1], None, _FAR_S * 60)
+    early = anchors_s[:, 0] - times_s[:, None]
+    late = times_s[:, None] - anchors_s[:, 1]
     return DominanceProblem(
         np.maximum(np.maximum(early, late), 0.0),
         np.asarray(early > 0),

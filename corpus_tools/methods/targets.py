@@ -30,11 +30,11 @@ def _postures(recording: Recording, silence: str) -> FloatArray:
     return np.asarray(CubicSpline(capture.times_s, capture.positions_mm)(at))
 
 
-def class_targets_mm(training: TrainingSet, remove_bias: bool = False) -> dict[str, FloatArray]:
+def class_targets_mm(training: TrainingSet) -> dict[str, FloatArray]:
     """Return the mean posture (n_markers, 3) mm of every viseme class that the recordings hold."""
     phones = training.phones
     found: dict[str, list[FloatArray]] = defaultdict(list)
-    for recording in training.of(remove_bias):
+    for recording in training.recordings:
         for label, posture in zip(
             recording.utterance.labels, _postures(recording, phones.silence), strict=True
         ):

@@ -26,20 +26,7 @@ from corpus_tools.pipeline.stages import Synthesis
 
 __all__ = ["JOIN_COLUMNS", "write_motion", "write_synthesis"]
 
-JOIN_COLUMNS = (
-    "join",
-    "time_s",
-    "phone",
-    "left_source",
-    "right_source",
-    "overlap_s",
-    "gap_mm",
-    "gap_mm_s",
-    "gap_mm_s2",
-    "natural_percentile",
-    "flagged",
-    "peak_ratio",
-)
+JOIN_COLUMNS = ("join", *(f.name for f in fields(Join) if f.name != "index"))
 """Columns of ``joins.csv``: the fields of :class:`~corpus_tools.core.trajectory.Join`, which says what they
 are; gap_mm, gap_mm_s and gap_mm_s2: how far two fragments differ in position, velocity and acceleration."""
 

@@ -197,7 +197,7 @@ def joined_corpora(corpus: RawCorpus, other: RawCorpus) -> RawCorpus:
     CorpusError
         The phone sets differ, or the second lacks markers of the first.
     """
-    name = other.description.name or other.description.folder.name
+    name = other.description.name
     if corpus.phones.name != other.phones.name:
         raise CorpusError(
             f"'{other.description.file}' has the phones '{other.phones.name}' and "

@@ -80,7 +80,8 @@ def lip_pair_functionals(names: Sequence[str]) -> FloatArray:
 def lip_aperture_mm(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:
     """Return the signed lip aperture, mm: (n_frames,) from (n_frames, n_markers, 3).
 
-    Negative where the contours cross; along y, so head motion must have been removed.
+    Negative where the contours cross; along y, so head motion must have been removed. NaN in frames in which
+    any marker is missing, be it one of the lips or not; 0 when the layout has no lips.
     """
     return np.asarray(np.einsum("fmk,mk->f", positions_mm, aperture_functional(names)))
 

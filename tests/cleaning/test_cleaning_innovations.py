@@ -30,7 +30,7 @@ def band(rng, n, high_hz):
 
 @pytest.fixture(scope="module")
 def simulated():
-    """The capture of the design: 8 gestures below 6 Hz in 90 channels, .15 mm of skin, .15 mm of noise."""
+    """A simulated capture: 8 gestures below 6 Hz in 90 channels, .15 mm of skin, .15 mm of noise."""
     rng = np.random.default_rng(3)
     sizes = np.array([4, 2.5, 1.5, 1, 0.7, 0.5, 0.35, 0.25])
     truth = band(rng, 8, 6.0) * sizes @ rng.normal(size=(8, 90)) / np.sqrt(8) + 0.15 * band(rng, 90, 5.0)
@@ -46,7 +46,7 @@ def within(smoothed, truth, sd):
 
 
 def test_the_estimate_is_as_good_as_the_best_cutoff(simulated):
-    """The bars of the design: 6 dB at the optimum, and 8 dB through principal components."""
+    """At least the 6 dB of one cutoff of 10 Hz (decision 012), and 8 dB through principal components."""
     truth, seen = simulated
     all_there = np.ones(N, bool)
     best = max(gain_db(smooth_channels(seen, all_there, RATE_HZ, c)[0], truth, seen) for c in CUTOFFS_HZ)

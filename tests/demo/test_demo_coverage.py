@@ -17,7 +17,7 @@ from corpus_tools.demo import (
     time_grammar,
     true_markers,
 )
-from corpus_tools.fragments import build_inventory, missing_diphones
+from corpus_tools.fragments import build_inventory, coverage
 from corpus_tools.speech import phone_set, recorded_utterance, speak_text
 from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
 from tests.demo.patient_voice import PatientVoice
@@ -57,8 +57,7 @@ def recordings():
 def test_all_2880_have_every_diphone_in_the_corpus_so_that_none_needs_backoff(asked, recordings):
     assert len(asked) == 2880
     inventory = build_inventory(recordings)
-    lacking = {u.text: missing_diphones(inventory, u.labels) for u in asked}
-    assert {text: missing for text, missing in lacking.items() if missing} == {}
+    assert coverage(inventory, asked, leave_one_out=False).missing == ()
 
 
 def test_the_lexicon_that_sentences_are_chosen_by_says_what_the_voice_says(asked):
@@ -93,4 +92,5 @@ def test_a_corpus_without_one_of_the_words_would_be_found_wanting(asked, recordi
     inventory = build_inventory(without)
     with_six = [u for u in asked if " six " in u.text]
     assert len(with_six) == 240
-    assert all(("S", "IH") in missing_diphones(inventory, u.labels) for u in with_six)
+    covered = coverage(inventory, with_six, leave_one_out=False).utterances
+    assert all(("S", "IH") in u.missing for u in covered)

@@ -25,11 +25,17 @@ def test_only_the_rim_moves_and_straight_down_to_one_level(name):
 
 def test_a_skin_that_is_open_at_the_face_only_stays_as_it_is():
     head = bundled_head()
-    rim = neck_rim(head)
-    low = head.vertices_mm[rim, 1].max() + 30.0  # cut above the chin: the edge runs through the face
-    kept = (head.vertices_mm[head.faces][:, :, 1] > low).all(axis=1)
-    cut = replace(head, faces=head.faces[kept])
-    assert len(neck_rim(cut)) == 0 or cut.vertices_mm[neck_rim(cut), 1].max() < low + 60.0
+    marked_y = head.vertices_mm[list(head.markers.values()), 1]
+
+    def cut_at(share):
+        """Return what lies above a height between the lowest and the highest marker."""
+        low = marked_y.min() + share * np.ptp(marked_y)
+        return replace(head, faces=head.faces[(head.vertices_mm[head.faces][:, :, 1] > low).all(axis=1)])
+
+    through_the_face = cut_at(0.5)
+    assert len(neck_rim(through_the_face)) == 0
+    assert level_neck(through_the_face) is through_the_face
+    assert len(neck_rim(cut_at(-0.1))) > 20
     bare = replace(head, markers={})
     assert level_neck(bare) is bare
 

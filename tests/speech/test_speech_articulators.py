@@ -61,6 +61,13 @@ def test_without_inner_lips_the_outer_ones_are_measured():
     assert not aperture_functional(["brow0", "chin0"]).any()
 
 
+def test_a_frame_that_misses_any_marker_has_no_aperture():
+    positions = mouth(np.array([1.0, 2.0, 3.0]))
+    positions[1, NAMES.index("chin3")] = np.nan
+    assert np.isnan(lip_aperture_mm(positions, NAMES)).tolist() == [False, True, False]
+    assert not lip_aperture_mm(np.ones((2, 1, 3)), ["chin0"]).any()
+
+
 def test_width_and_jaw_are_distances():
     positions = np.zeros((2, len(NAMES), 3))
     positions[:, NAMES.index("lip_out6")] = [3.0, 4.0, 0.0]

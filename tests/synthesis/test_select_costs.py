@@ -76,6 +76,7 @@ def test_where_nothing_stands_in_all_missing_diphones_are_named(search):
     with pytest.raises(NoUnitError, match="T-A, A-T, not even by viseme class") as error:
         search(model, utterance("t", ["SIL", "P", "SIL", "T", "A", "T", "SIL"]))
     assert error.value.diphones == (("T", "A"), ("A", "T"))
+    assert str(error.value).endswith("record a sentence that holds it, or choose words without it.")
     with pytest.raises(NoUnitError, match="allow backoff to viseme classes"):
         search(model, utterance("t", ["SIL", "T", "SIL"]), allow_backoff=False)
 

@@ -1,4 +1,4 @@
-"""The tokens: contrast and class colours hold what the design promises, in both themes."""
+"""The tokens: texts keep their contrast and classes their distance, in both themes."""
 
 import itertools
 
