@@ -32,7 +32,6 @@ from corpus_tools.demo import simulate_corpus
 from corpus_tools.io import init_corpus
 from corpus_tools.mesh import signed_lip_aperture_mm
 from corpus_tools.pipeline import (
-    Animation,
     align_units,
     animate,
     blend_units,
@@ -40,9 +39,7 @@ from corpus_tools.pipeline import (
     prepare_head,
     synthesise,
 )
-from workbench.views.cameras import head_camera
-from workbench.views.head_actors import head_actors
-from workbench.views.mesh_view import MeshView
+from workbench.views.speaking_head import move_head, show_head
 from workbench.views.transport import Transport
 
 pn.extension(inline=True)
@@ -123,19 +120,7 @@ pd.DataFrame(
 # holds, make the skin of them.
 
 # %%
-rest_mm = head.mesh.vertices_mm[[head.mesh.markers[name] for name in head.names]]
-view = MeshView(session="first", height=420, sizing_mode="stretch_width")
-view.show_actors(head_actors(head.mesh, head.binding), camera=head_camera(head.mesh))
-
-
-def show(motion: Animation) -> None:
-    """Let the head in the view move as `motion` says."""
-    moving = [actor["name"] for actor in view.actors if actor["basis"] or actor["patches"]]
-    shift = dict.fromkeys(moving, motion.targets_mm - rest_mm)
-    view.set_motion(config.alignment.rate_hz, displacements=shift, rigid=motion.rigid)
-
-
-show(synthesis.animation)
+view = show_head(head, synthesis.animation, session="first")
 transport = Transport(session="first")
 transport.load(target, corpus.phones)
 pn.Column(view, transport, width=760)
@@ -155,7 +140,7 @@ for name, settings in {"as it was": config, "short and straight": changed}.items
     motion = animate(head, blend_units(corpus, target, pieces, settings))
     frames = head.binding.apply(motion.targets_mm, rigid=motion.rigid)
     apertures[name] = signed_lip_aperture_mm(frames, head.mesh)
-show(motion)
+move_head(view, head, motion)
 
 # %% [markdown]
 # Away from the joins nothing changes, so the whole sentence would show two lines on top of each other: we

@@ -7,7 +7,7 @@ import panel as pn
 from browser.shown import FIND, SIZE, Shown
 
 from corpus_tools.mesh import DEFORMERS, bundled_head
-from corpus_tools.pipeline import Head
+from corpus_tools.pipeline import Animation, Head
 from workbench.views.face import Face
 
 
@@ -19,9 +19,10 @@ def result(kind):
     shift[:, [n.startswith("chin") for n in names], 1] = -np.linspace(0, 6, 31)[:, None]
     return SimpleNamespace(
         head=Head(mesh, names, None, binding),
-        displacements_mm=shift,
         trajectory=SimpleNamespace(rate_hz=30.0, times_s=np.arange(31) / 30.0),
-        animation=SimpleNamespace(rigid=binding.rigid(binding.rest_mm + shift)),
+        animation=Animation(
+            np.arange(31) / 30.0, binding.rest_mm + shift, binding.rigid(binding.rest_mm + shift)
+        ),
     )
 
 

@@ -9,10 +9,8 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-import numpy as np
-
 from corpus_tools.config import ConfigBase
-from corpus_tools.core import Audio, FloatArray, Selection, Trajectory, Utterance
+from corpus_tools.core import Audio, Selection, Trajectory, Utterance
 from corpus_tools.pipeline import (
     Animation,
     Head,
@@ -96,13 +94,6 @@ class Result:
     def ratios(self) -> tuple[float, ...]:
         """Peak acceleration of each join over that of natural stretches (95th percentile), lips open."""
         return self.trajectory.peak_ratios
-
-    @property
-    def displacements_mm(self) -> FloatArray:
-        """Marker displacements from the rest of the mesh, (n_frames, n_markers, 3) mm."""
-        mesh = self.head.mesh
-        rest = mesh.vertices_mm[[mesh.markers[n] for n in self.head.names]]
-        return np.asarray(self.animation.targets_mm) - rest
 
     @property
     def audio(self) -> Audio | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import panel as pn
 import param
 import pyvista.plotting
@@ -16,8 +15,9 @@ from workbench.views.cameras import head_camera
 from workbench.views.cast import cast_camera, cast_places, cast_prefix
 from workbench.views.head_actors import OVERLAYS, head_actors
 from workbench.views.mesh_view import MeshView
+from workbench.views.speaking_head import head_motion
 
-__all__ = ["Face", "head_motion"]
+__all__ = ["Face"]
 
 # pyvista loads its names when they are first asked for, which two sessions must not do at once
 assert pyvista.plotting
@@ -106,10 +106,11 @@ class Face(pn.viewable.Viewer):
             return
         trajectory = self.result.trajectory
         own = [a for a in self.mesh_view.actors if "/" not in a["name"]]
-        motion = head_motion(self.result, own)
+        motion = head_motion(self.result.head, self.result.animation, own)
         for other in self._cast:
             if other.request.same_target(self.result.request):  # else it rests
-                theirs = head_motion(other, self.mesh_view.actors, cast_prefix(other.head.mesh.name))
+                prefix = cast_prefix(other.head.mesh.name)
+                theirs = head_motion(other.head, other.animation, self.mesh_view.actors, prefix)
                 for what, values in theirs.items():
                     motion[what].update(values)
         self.mesh_view.set_motion(trajectory.rate_hz, **motion, start_s=float(trajectory.times_s[0]))
@@ -141,21 +142,3 @@ class Face(pn.viewable.Viewer):
 
     def __panel__(self) -> Any:
         return self.mesh_view
-
-
-def head_motion(result: Result, actors: list[dict[str, Any]], prefix: str = "") -> dict[str, Any]:
-    """Return the motion of a result's head, for :meth:`MeshView.set_motion`, for those actors that are there.
-
-    Parameters
-    ----------
-    result : Result
-    actors : list of dict
-        Of the view.
-    prefix : str
-        As of :func:`workbench.views.head_actors.head_actors`.
-    """
-    mine = {a["name"].removeprefix(prefix): a for a in actors if a["name"].startswith(prefix)}
-    shift = result.displacements_mm.astype(np.float32)
-    moving = [a["name"] for a in mine.values() if a["basis"] or a["patches"]]
-    rigid = {prefix + part: m for part, m in result.animation.rigid.items() if part in mine}
-    return {"displacements": dict.fromkeys(moving, shift), "rigid": rigid}
