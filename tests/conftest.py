@@ -26,6 +26,9 @@ MARKS_BY_FOLDER = {
     "benchmarks": ("slow",),
 }
 
+# fixture -> the folder whose marks a test gets that asks for it, wherever it stands
+MARKS_BY_FIXTURE = {"corpora": "real", "offscreen": "render"}
+
 _common = {
     "deadline": None,
     "database": None,
@@ -48,13 +51,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark tests by the folder they stand in, and as real whatever asks for the recordings."""
+    """Mark tests by the folder they stand in, and by the recordings or the drawing that they ask for."""
     for item in items:
         folder = item.path.relative_to(TESTS).parts[0] if item.path.is_relative_to(TESTS) else ""
-        marks = MARKS_BY_FOLDER.get(folder, ())
-        if "corpora" in getattr(item, "fixturenames", ()):
-            marks = (*marks, *MARKS_BY_FOLDER["real"])
-        for mark in marks:
+        asked = {MARKS_BY_FIXTURE.get(name, "") for name in getattr(item, "fixturenames", ())}
+        for mark in {m for source in {folder, *asked} for m in MARKS_BY_FOLDER.get(source, ())}:
             item.add_marker(mark)
 
 
@@ -98,6 +99,15 @@ def corpora() -> Path:
     if not folder.is_dir():
         pytest.fail(f"SPEECH_CORPORA names '{folder}', which is not a folder.")
     return folder
+
+
+@pytest.fixture(scope="session")
+def offscreen() -> None:
+    """Skip, with the package that is missing, where VTK draws nothing without a screen."""
+    from corpus_tools.render import probe_offscreen
+
+    if not (status := probe_offscreen()).ok:
+        pytest.skip(status.reason)
 
 
 @pytest.fixture(scope="session")

@@ -16,6 +16,8 @@ CASES = {
     "real/test_it.py": "def test_real(corpora):\n    assert corpora.is_dir()\n",
     "real/test_gone.py": "import pytest\npytest.skip('nothing here', allow_module_level=True)\n",
     "browser/test_page.py": "import pytest\ndef test_page():\n    pytest.skip('no Chromium')\n",
+    "cli/test_drawn.py": "import pytest\n@pytest.fixture\ndef offscreen():\n    pytest.skip('no VTK')\n"
+    "def test_drawn(offscreen):\n    pass\n",
     "core/test_plain.py": "def test_plain():\n    assert True\n",
 }
 
@@ -44,12 +46,12 @@ def run(suite: Path, *arguments: str, **environment: str) -> dict[str, int]:
 
 
 def test_without_recordings_the_tests_on_them_skip(suite: Path) -> None:
-    assert run(suite) == {"passed": 1, "skipped": 3}
+    assert run(suite) == {"passed": 1, "skipped": 4}
 
 
 def test_with_recordings_a_skip_is_a_failure(suite: Path, tmp_path: Path) -> None:
     counts = run(suite, "--continue-on-collection-errors", SPEECH_CORPORA=str(tmp_path))
-    assert counts == {"passed": 2, "skipped": 1, "error": 1}
+    assert counts == {"passed": 2, "skipped": 2, "error": 1}
 
 
 def test_recordings_that_are_not_there_are_a_failure(suite: Path) -> None:
@@ -61,6 +63,11 @@ def test_continuous_integration_must_have_a_browser(suite: Path) -> None:
     assert run(suite, "tests/browser", CI="true") == {"failed": 1}
 
 
+def test_what_asks_for_drawing_must_draw_there_wherever_it_stands(suite: Path) -> None:
+    assert run(suite, "tests/cli", CI="true") == {"error": 1}
+    assert run(suite, "tests/cli") == {"skipped": 1}
+
+
 def test_folders_give_marks(suite: Path) -> None:
-    assert run(suite, "-m", "not slow", "--ignore=tests/real/test_gone.py") == {"passed": 1, "deselected": 2}
-    assert run(suite, "-m", "real", "--ignore=tests/real/test_gone.py") == {"skipped": 1, "deselected": 2}
+    assert run(suite, "-m", "not slow", "--ignore=tests/real/test_gone.py") == {"passed": 1, "deselected": 3}
+    assert run(suite, "-m", "real", "--ignore=tests/real/test_gone.py") == {"skipped": 1, "deselected": 3}

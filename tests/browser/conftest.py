@@ -65,7 +65,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Work
     simulate_corpus(folder / "corpus", n_sentences=12)
     workbench = Workbench(Options(corpus=folder / "corpus", root=folder, browser=False))
     port = free_port()
-    server = workbench.serve(port=port, threaded=True)
+    server = workbench.serve(port)
     yield f"http://127.0.0.1:{port}/", workbench, folder
     for page in list(workbench.pages):
         page.close()

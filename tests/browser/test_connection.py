@@ -9,7 +9,7 @@ from workbench.apps.serving import Options, Workbench, free_port
 def started():
     """Serve a page without a corpus; return its address and its server."""
     workbench, port = Workbench(Options(browser=False, demo=False)), free_port()
-    server = workbench.serve(port=port, threaded=True)
+    server = workbench.serve(port)
     yield f"http://127.0.0.1:{port}/", server
     for page in list(workbench.pages):
         page.close()

@@ -23,7 +23,7 @@ def started(tmp_path):
 
     workbench.make_demo = make
     port = free_port()
-    server = workbench.serve(port=port, threaded=True)
+    server = workbench.serve(port)
     yield f"http://127.0.0.1:{port}/", go
     go.set()
     for page in list(workbench.pages):

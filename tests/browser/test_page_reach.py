@@ -71,9 +71,8 @@ def test_an_export_goes_beside_the_corpus_and_its_line_is_copied_whole(opened, s
     browser_page, session = opened
     browser_page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     field = browser_page.get_by_label("Config file")
-    assert field.input_value() == str(
-        served[2] / "exports" / f"{session.sentence}.toml"
-    )  # the root of the server
+    place = str(served[2] / "exports" / f"{session.sentence}.toml")  # under the root of the server
+    until(browser_page, lambda: field.input_value() == place)
     field.fill("mine")
     browser_page.keyboard.press("Tab")
     browser_page.get_by_role("button", name="Export").click()

@@ -7,16 +7,13 @@ import pytest
 from browser.shown import GROUND, SIZE, Shown
 
 from corpus_tools.mesh import bundled_head
-from corpus_tools.render import probe_offscreen, scene
+from corpus_tools.render import scene
 from workbench.views.mesh_view import MeshView
 from workbench.views.scene_actors import DEFAULT_LIGHTS
 
 
 @pytest.mark.parametrize("view", ["front", "three-quarter"])
-def test_the_picture_agrees_with_pyvista(serve, browser_page, view):
-    status = probe_offscreen()
-    if not status.ok:
-        pytest.skip(status.reason)
+def test_the_picture_agrees_with_pyvista(offscreen, serve, browser_page, view):
     plotter = scene(bundled_head(), view=view, size=(420, 380), markers=True)
     plotter.set_background(GROUND)
     oracle = np.asarray(plotter.screenshot(return_img=True))[..., :3]
@@ -36,9 +33,7 @@ def test_the_picture_agrees_with_pyvista(serve, browser_page, view):
     assert colour < 12
 
 
-def test_default_lights_are_those_of_the_scene():
-    if not probe_offscreen().ok:
-        pytest.skip("off-screen drawing does not work here")
+def test_default_lights_are_those_of_the_scene(offscreen):
     from workbench.views.plotter_scene import lights_of
 
     plotter = scene(bundled_head(), size=(60, 60))

@@ -11,7 +11,7 @@ from PIL import Image
 
 import workbench.views.stills as stills
 from corpus_tools.mesh import bind_bid, bundled_head, level_neck, neck_rim
-from corpus_tools.render import OffscreenStatus, probe_offscreen
+from corpus_tools.render import OffscreenStatus
 from workbench.views.cameras import head_camera
 from workbench.views.head_actors import head_actors
 from workbench.views.mesh_view import MeshView
@@ -43,9 +43,7 @@ def make_view(spoken, **params):
     return view
 
 
-def test_the_pose_drawn_by_the_server_is_that_of_the_deformer(spoken):
-    if not probe_offscreen().ok:
-        pytest.skip(probe_offscreen().reason)
+def test_the_pose_drawn_by_the_server_is_that_of_the_deformer(offscreen, spoken):
     head, binding, shift = spoken
     view = make_view(spoken)
     scene = PosedScene(view.actors, view.lights)
@@ -67,9 +65,7 @@ def test_the_pose_drawn_by_the_server_is_that_of_the_deformer(spoken):
     scene.close()
 
 
-def test_pictures_follow_the_clock_the_mouse_and_the_motion(serve, browser_page, spoken):
-    if not probe_offscreen().ok:
-        pytest.skip(probe_offscreen().reason)
+def test_pictures_follow_the_clock_the_mouse_and_the_motion(offscreen, serve, browser_page, spoken):
     views = []
 
     def make():

@@ -7,7 +7,6 @@ import pytest
 
 from corpus_tools.cli.bench import BENCHMARKS, Ground, Row
 from corpus_tools.cli.bench.command import table_lines
-from corpus_tools.render import probe_offscreen
 from tests.cli.answers import refused
 
 
@@ -23,9 +22,9 @@ DRAWN = {"film"}
 @pytest.mark.parametrize(
     "topic", [pytest.param(t, marks=pytest.mark.render) if t in DRAWN else t for t in BENCHMARKS]
 )
-def test_every_topic_measures(ground, topic):
-    if topic in DRAWN and not (status := probe_offscreen()).ok:
-        pytest.skip(status.reason)
+def test_every_topic_measures(ground, topic, request):
+    if topic in DRAWN:
+        request.getfixturevalue("offscreen")
     rows = BENCHMARKS[topic](ground)
     assert rows
     for row in rows:

@@ -28,10 +28,7 @@ SMALL = config_with(Config(), film__width=128, film__height=96, film__rate_hz=5.
 
 
 @pytest.fixture(scope="module")
-def made(opened_corpus):
-    status = probe_offscreen()
-    if not status.ok:
-        pytest.skip(status.reason)
+def made(offscreen, opened_corpus):
     head = prepare_head(opened_corpus, "base", SMALL)
     target = min((r.utterance for r in opened_corpus.recordings), key=lambda u: u.duration_s)
     return synthesise(opened_corpus, target, SMALL, head, (target.name,)), head

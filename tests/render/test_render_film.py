@@ -21,7 +21,6 @@ from corpus_tools.render import (
     ffmpeg_path,
     film_times_s,
     poses_at,
-    probe_offscreen,
     snapshot,
     write_film,
     write_frames,
@@ -32,10 +31,8 @@ SMALL = config_with(Config(), film__width=96, film__height=80, film__rate_hz=RAT
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _can_draw():
-    status = probe_offscreen()
-    if not status.ok:
-        pytest.skip(status.reason)
+def _can_draw(offscreen):
+    """Everything here draws."""
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,6 @@ from corpus_tools.render import (
     MovingHead,
     drawn_part,
     part_surface,
-    probe_offscreen,
     scene,
     snapshot,
 )
@@ -26,10 +25,8 @@ def head():
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _can_draw():
-    status = probe_offscreen()
-    if not status.ok:
-        pytest.skip(status.reason)
+def _can_draw(offscreen):
+    """Everything here draws."""
 
 
 def picture(png):

@@ -11,7 +11,6 @@ from corpus_tools.config import Config, config_with
 from corpus_tools.core import Interval, Mesh, MeshError
 from corpus_tools.mesh import CHARACTERS, bundled_head
 from corpus_tools.pipeline import prepare_head, synthesise
-from corpus_tools.render import probe_offscreen
 from corpus_tools.render.drawing import Drawing
 from corpus_tools.render.strip import chosen_phones, strip_drawing, tracked_vertices
 
@@ -72,9 +71,7 @@ def test_a_drawing_is_the_same_as_svg_and_png():
     assert (image[50:70, 98:112].min(axis=2) < 100).any()
 
 
-def test_the_figure_names_its_axes_and_draws_what_was_synthesised(opened_corpus):
-    if not (status := probe_offscreen()).ok:
-        pytest.skip(status.reason)
+def test_the_figure_names_its_axes_and_draws_what_was_synthesised(offscreen, opened_corpus):
     config = config_with(Config(), alignment__rate_hz=60.0)
     head = prepare_head(opened_corpus, "base", config)
     target = min((r.utterance for r in opened_corpus.recordings), key=lambda u: u.duration_s)

@@ -147,6 +147,7 @@ class BlendPage:
         watch(self._corpus, "corpus")
         watch(self._opening, "status")
         watch(self._sound, "result")
+        watch(self._not_spoken, ["message", "target_kind", "corpus"])
         watch(self._suggest, ["corpus", "target_kind", "sentence", "text"])
 
     def arrived(self) -> None:
@@ -171,6 +172,11 @@ class BlendPage:
             self.transport.play()
         else:
             self._plays_next = True
+
+    def _not_spoken(self, *events: Any) -> None:
+        """Forget what Enter asked for: the text was refused, or left; another must not play by itself."""
+        if any(event.new for event in events):
+            self._plays_next = False
 
     def _speak(self, recording: str) -> None:
         self.session.param.update(target_kind="recording", sentence=recording)

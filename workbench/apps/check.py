@@ -79,7 +79,7 @@ def check_run(options: Options, timeout_s: float = 180.0) -> CheckReport:
     started = time.monotonic()
     port = free_port()
     workbench = Workbench(replace(options, browser=False))
-    server = workbench.serve(port=port, threaded=True, browser=False)
+    server = workbench.serve(port)
     url = f"http://127.0.0.1:{port}/"
     try:
         session_id = _session_of_page(url, started + timeout_s)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +12,7 @@ from typer.core import TyperCommand
 import corpus_tools
 from corpus_tools.cli.common import PATH, OneSentence, guarded, say
 from corpus_tools.core import InputError
+from workbench.apps.stopping import StoppedBySignal
 
 __all__ = ["APPS", "app", "run"]
 
@@ -68,29 +68,29 @@ def workbench(
         say(f"workbench {corpus_tools.__version__}")
         return
     _check_app(app_name)
-    # panel takes a second or two to import: not before the arguments are known to be good
-    from workbench.apps.serving import Options, Workbench, check_options
+    with StoppedBySignal(noted=not check) as stop:
+        # panel takes a second or two to import: not before the arguments are known to be good
+        from workbench.apps.serving import Options, Workbench, check_options
 
-    options = Options(
-        corpus,
-        host,
-        0 if check else port,
-        password_file,
-        tuple(origin or ()),
-        root,
-        not no_browser,
-        app=app_name,
-    )
-    check_options(options)
-    if check:
-        _check(options)
-        return
-    server = Workbench(options)
-    if port:
-        say(f"The workbench is at http://{host}:{port}/ (stop it with Ctrl-C).")
-    signal.signal(signal.SIGTERM, lambda signum, frame: signal.raise_signal(signal.SIGINT))
-    server.serve()
-    say("The workbench has stopped.")
+        options = Options(
+            corpus,
+            host,
+            0 if check else port,
+            password_file,
+            tuple(origin or ()),
+            root,
+            not no_browser,
+            app=app_name,
+        )
+        check_options(options)
+        if check:
+            _check(options)
+            return
+        server = Workbench(options)
+        if port:
+            say(f"The workbench is at http://{host}:{port}/ (stop it with Ctrl-C).")
+        server.run(stop)
+        say("The workbench has stopped.")
 
 
 def _check(options: object) -> None:

@@ -18,6 +18,7 @@ from corpus_tools.core import InputError
 from corpus_tools.demo import demo_folder
 from workbench.actions import CorpusCache, cache_folder
 from workbench.apps.blend import BlendPage
+from workbench.apps.stopping import StoppedBySignal
 from workbench.views.theme import ASSETS_ROUTE, FRONTEND
 
 __all__ = ["LOOPBACK", "Options", "Workbench", "check_options", "free_port", "read_password"]
@@ -195,25 +196,24 @@ class Workbench:
         if page in self.pages:
             self.pages.remove(page)
 
-    def serve(self, port: int | None = None, threaded: bool = False, browser: bool | None = None) -> Any:
-        """Start the server; returns it (or its thread) when `threaded`, else blocks until it is stopped."""
+    def serve(self, port: int | None = None) -> Any:
+        """Serve in a thread, without opening the browser; return the thread, which has ``stop()``."""
+        return self._made(port, browser=False, threaded=True)
+
+    def run(self, stop: StoppedBySignal) -> None:
+        """Serve until a signal tells to stop; what still computes then ends: it would hold the process."""
+        try:
+            stop.run(self._made(None, browser=self.options.browser, start=False))
+        finally:
+            for page in tuple(self.pages):
+                self._gone(page)
+
+    def _made(self, port: int | None, browser: bool, **how: Any) -> Any:
         options = self.options
         port = (options.port if port is None else port) or free_port(options.host)
-        guard: dict[str, Any] = {}
         if options.password_file is not None:
-            guard = {
-                "basic_auth": read_password(options.password_file),
-                "cookie_secret": secrets.token_hex(32),
-            }
-        try:
-            return self._start(port, threaded, options.browser if browser is None else browser, guard)
-        finally:
-            if not threaded:
-                for page in tuple(self.pages):
-                    self._gone(page)  # what still computes is told to stop, or the process waits for it
-
-    def _start(self, port: int, threaded: bool, browser: bool, guard: dict[str, Any]) -> Any:
-        options = self.options
+            how["basic_auth"] = read_password(options.password_file)
+            how["cookie_secret"] = secrets.token_hex(32)
         return pn.serve(
             {"/": self.page},
             port=port,
@@ -224,9 +224,8 @@ class Workbench:
             title="Visual speech workbench",
             static_dirs={ASSETS_ROUTE: str(FRONTEND / "fonts")},
             websocket_max_message_size=MAX_MESSAGE_BYTES,
-            threaded=threaded,
             verbose=False,
-            **guard,
+            **how,
         )
 
 

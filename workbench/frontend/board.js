@@ -41,7 +41,7 @@ function sides(model) {
     const button = document.createElement("button");
     button.type = "button";
     button.textContent = side;
-    button.onclick = () => model.side !== side && model.send_msg({ type: "action", id: "sides" });
+    button.onclick = () => model.send_msg({ type: "action", id: side }); // the server knows which is shown by then
     group.append(button);
     return button;
   });
@@ -112,7 +112,7 @@ function views(model) {
     button.textContent = label;
     button.dataset.id = id;
     button.title = "Lane or trajectories (V)";
-    button.onclick = () => model.shown !== id && model.send_msg({ type: "action", id: "view" });
+    button.onclick = () => model.send_msg({ type: "action", id });
     group.append(button);
   }
   const draw = () => {

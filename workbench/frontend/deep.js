@@ -15,9 +15,12 @@ export function deepFind(node, test) {
   return null;
 }
 
-/** Give the focus to the slider of the longest overlap, or of the duration that stands in its place, so that the arrow keys change it. */
+/**
+ * Give the focus to the slider of the longest overlap, or of the duration that stands in its place, so that the
+ * arrow keys change it. Both carry the class "keyed"; a slider beside them may still be on its way out.
+ */
 export function focusOverlap(root) {
-  const place = deepFind(root, (e) => e.classList.contains("sliders"));
-  const slider = place && deepFind(place, (e) => e.tagName === "INPUT" && e.type === "range" && e.checkVisibility());
-  slider?.focus();
+  const shown = deepFind(root, (e) => e.classList.contains("keyed") && e.checkVisibility());
+  const inside = shown && deepFind(shown.shadowRoot ?? shown, (e) => e.tagName === "INPUT" && e.type === "range");
+  inside?.focus();
 }

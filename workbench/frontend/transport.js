@@ -159,9 +159,10 @@ export function renderTransport({ model, el }) {
     load();
     if (model.plays && sound.duration > 0) play(0, sound.duration);
   };
-  model.on("revision", () => setTimeout(begin, 0)); // after every value of the same update has arrived
+  const later = (action) => setTimeout(action, 0); // after every value of the same update has arrived, in order
+  model.on("revision", () => later(begin));
   model.on("theme", paint);
-  model.on("msg:custom", (message) => sound.duration > 0 && obey[message.op]?.(message));
+  model.on("msg:custom", (message) => later(() => sound.duration > 0 && obey[message.op]?.(message)));
   root.vsw = { clock: clk, sound, overview };
   model.on("remove", () => {
     clearTimeout(timer);

@@ -29,6 +29,8 @@ from workbench.views.trajectories import Trajectories
 __all__ = ["BlendBoard"]
 
 _MODES = {"Cross-fade": "crossfade", "Inertial": "inertial"}
+KEYED = "keyed"
+"""Class of the slider that the key of the overlap gives the focus to."""
 _UNUSED = "Inertial joins use no g(u): the offset of the fragments dies away"
 
 
@@ -68,7 +70,11 @@ class BlendBoard(pn.viewable.Viewer):
         self.mode = preset_buttons(controls, "How fragments are joined", "mode", _MODES)
         self.mode.param.update(sizing_mode=None, width=170)
         self.overlap = slider(
-            controls, "Longest overlap, ms", "overlap_s", (0.0, 300.0), factor=1000.0, step=5.0, format="0"
+            *(controls, "Longest overlap, ms", "overlap_s", (0.0, 300.0)),
+            factor=1000.0,
+            step=5.0,
+            format="0",
+            css_classes=[KEYED],
         )
         self.shape = slider(
             controls, "Crossover early – late", "shape", (-1.0, 1.0), step=0.02, format="0.00"
@@ -78,6 +84,7 @@ class BlendBoard(pn.viewable.Viewer):
             factor=1000.0,
             step=5.0,
             format="0",
+            css_classes=[KEYED],
         )
         self.board = Board(
             face=self.face.view,
@@ -178,12 +185,14 @@ class BlendBoard(pn.viewable.Viewer):
         swap_to(self._session, option)
 
     def _act(self, action: str) -> None:
-        if action == "sides":
-            self._session.swap_sides()
+        if action in ("A", "B"):
+            if self._session.side != action:
+                self._session.swap_sides()
         elif action == "cancel":
             self._on_cancel()
-        elif action == "view":
-            self.switch_view()
+        elif action in ("lane", "curves"):
+            if self.board.shown != action:
+                self.switch_view()
         elif action == "several":
             self._several()
         elif action in OVERLAYS:

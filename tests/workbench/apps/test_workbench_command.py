@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import signal
 import socket
 import subprocess
 import sys
@@ -44,7 +45,10 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, word):
     assert not done.stdout  # it does not say that it serves, and then that it cannot
 
 
-def test_it_stops_when_it_is_told_to_and_says_so():
+@pytest.mark.parametrize("told", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("answers", [False, True])
+def test_it_stops_when_it_is_told_to_and_says_so(told, answers):
+    """However early: as soon as it has said where it is, or when the page answers."""
     code = "from workbench.apps.main import run; run()"
     port = free_port()
     command = [sys.executable, "-c", code, "--no-browser", "--port", str(port)]
@@ -52,8 +56,9 @@ def test_it_stops_when_it_is_told_to_and_says_so():
         try:
             assert server.stdout is not None
             assert "is at" in server.stdout.readline()
-            wait_until_answers(f"http://127.0.0.1:{port}/static/js/bokeh.min.js")
-            server.terminate()
+            if answers:
+                wait_until_answers(f"http://127.0.0.1:{port}/static/js/bokeh.min.js")
+            server.send_signal(told)
             out, err = server.communicate(timeout=60)
         finally:
             server.kill()  # a test that has failed waits for nobody
