@@ -36,7 +36,7 @@ __all__ = [
 
 ARTICULATORS = ("aperture", "width", "protrusion", "jaw")
 COMPONENTS = 8
-"""Principal components in the Frechet distance, as in EVALUATION and paper B."""
+"""Principal components in the Frechet distance: as many as paper B takes of the face."""
 
 
 def articulators(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:

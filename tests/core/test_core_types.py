@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from corpus_tools.core import (
+    SPEECH_REGIONS,
     Audio,
     Capture,
     FrameFlag,
@@ -26,7 +27,10 @@ from corpus_tools.core import (
     Step,
     Tier,
     Trajectory,
+    Utterance,
     frozen,
+    region_columns,
+    speech_span_s,
     step,
 )
 from corpus_tools.core.selection import ChosenUnit, Costs, Selection, UnitRef
@@ -89,6 +93,23 @@ def test_capture_flags_follow_the_gaps():
     again = capture.with_step(step("nothing", b=2, a=1))
     assert again.history == (Step("nothing", (("a", 1), ("b", 2))),)
     assert capture.history == ()
+
+
+def test_samples_are_measured_or_flagged_and_regions_have_columns():
+    flags = np.array([[0, 1, 2, 4], [8, 1 | 4, 2 | 8, 1]], np.uint8)
+    capture = Capture(np.zeros((2, 4, 3)), 25.0, ("lip_in0", "lip_out1", "chin", "brow0"), flags=flags)
+    assert capture.measured.tolist() == [[False, True, False, False], [False, False, False, True]]
+    assert capture.flagged.tolist() == [[False, False, True, True], [True, True, True, False]]
+    assert region_columns(capture.regions, SPEECH_REGIONS).tolist() == [0, 1, 2]
+    assert region_columns(capture.regions, ("cheek",)).tolist() == [0, 1, 2, 3]
+    assert region_columns(capture.regions, None).tolist() == [0, 1, 2, 3]
+
+
+def test_speech_reaches_from_the_first_spoken_phone_to_the_last():
+    labels = ["SIL", "P", "SIL", "A", "SIL"]
+    spoken = Utterance("u", "", Tier("phones", tuple(Interval(k, k + 1, p) for k, p in enumerate(labels))))
+    assert speech_span_s(spoken, "SIL") == (1, 4)
+    assert speech_span_s(spoken, "SIL", 0.5) == (0.5, 4.5)
 
 
 @pytest.mark.parametrize(
