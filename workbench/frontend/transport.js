@@ -31,6 +31,13 @@ function button(name, label, onclick) {
   return made;
 }
 
+/** Whether a control was clicked at, or one was in whose place it was drawn since: lists are written anew. */
+function wasClicked(node, clicked) {
+  const said = JSON.stringify(node.dataset);
+  const again = (n) => !n.isConnected && n.tagName === node.tagName && JSON.stringify(n.dataset) === said;
+  return clicked.includes(node) || (said !== "{}" && clicked.some(again));
+}
+
 /** Whether Space belongs to what has the focus: a text field, or a control that was not clicked at. */
 function keepsSpace(event, clicked) {
   const node = event.composedPath()[0];
@@ -39,7 +46,7 @@ function keepsSpace(event, clicked) {
   if (node.tagName === "INPUT" && !["range", "checkbox", "radio", "button"].includes(node.type)) return true;
   const acts =
     node.tagName === "BUTTON" || ["button", "option", "menuitem"].includes(node.getAttribute("role"));
-  return acts && !clicked.includes(node);
+  return acts && !wasClicked(node, clicked);
 }
 
 function buildClock() {

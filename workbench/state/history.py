@@ -53,7 +53,7 @@ class Entry:
     values : mapping
         Every editable value of the state.
     effect : float
-        Largest join of the result (peak acceleration / p95 of natural stretches); NaN while it is not known.
+        Largest join of the result (peak acceleration / natural stretches' p95); NaN while it is not known.
     """
 
     number: int

@@ -53,7 +53,7 @@ def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -
     if join is None:
         return "<dt>Join</dt><dd>none: the sentence begins here</dd>"
     ratio = join["ratio"]
-    peak = "unknown" if ratio is None else f"{ratio:.2f} × p95 of natural stretches"
+    peak = "unknown" if ratio is None else f"{ratio:.2f} × natural stretches' p95"
     frames = round(join["overlap"] * frames_hz)
     over, inertial = f"{join['overlap']:.3f} s, {counted(frames, 'frame')}", join["inertial"]
     if inertial:

@@ -254,10 +254,9 @@ class BlendBoard(pn.viewable.Viewer):
         join = max(0, session.selected - 1)
         a_and_b = (result, session.other) if session.side == "B" else (session.other or result, result)
         data = effect_data(session.effects, a_and_b[0], a_and_b[1], join)
-        title, hint = "Peak acceleration ÷ p95 of natural stretches", ""
+        title, hint = "Peak ÷ natural stretches' p95", ""
         if join < len(result.ratios):
-            phone = result.trajectory.joins[join].phone
-            title = f"Join {join + 1}, {phone}: peak accel. ÷ p95 of natural stretches"
+            title = f"Join {join + 1}: peak ÷ natural stretches' p95"
             hint = lower_text(session.effects, result, join)
         self.plot.param.update(effect=data, title=title, hint=hint)
 
