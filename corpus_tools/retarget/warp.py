@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.distance import cdist
 
 from corpus_tools.core import FloatArray, MeshError, Registry, counted, frozen
 
@@ -213,13 +214,7 @@ def choose_smoothing(
 
 def _squares(x: FloatArray, sources: FloatArray) -> FloatArray:
     """Return squared distances (n_points, n_sources); differences first: exact at landmarks."""
-    total = np.subtract.outer(x[:, 0], sources[:, 0])
-    total *= total
-    for axis in (1, 2):
-        apart = np.subtract.outer(x[:, axis], sources[:, axis])
-        apart *= apart
-        total += apart
-    return np.asarray(total)
+    return np.asarray(cdist(x, sources, "sqeuclidean"))
 
 
 def _check_landmarks(source: FloatArray, target: FloatArray) -> None:

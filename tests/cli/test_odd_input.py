@@ -255,11 +255,11 @@ def test_files_are_moved_all_or_none(tmp_path, monkeypatch, moves, existed):
     n_moves = 4 if existed else 3
     if moves < n_moves:
         with pytest.raises(KeyboardInterrupt):
-            _move_all(source, target)
+            _move_all(source, target, lambda folder: False)
         assert {p.name: p.read_text() for p in target.glob("*")} == ({"b": "old"} if existed else {})
         assert target.exists() == existed
     else:
-        _move_all(source, target)
+        _move_all(source, target, lambda folder: False)
         assert {p.name: p.read_text() for p in target.glob("*")} == dict.fromkeys("abc", "new")
 
 

@@ -81,7 +81,7 @@ export function renderCurve({ model, el }) {
   canvas.setAttribute("role", "application");
   canvas.tabIndex = 0;
   root.append(canvas);
-  const ctx = canvas.getContext("2d");
+  const ctx = canvas.getContext("2d", { willReadFrequently: true }); // small, and drawn in every step of a drag
   let asked = 0;
   const half = () => Math.round(0.54 * root.clientWidth);
   const box = () => [34, 12, half() - 12, root.clientHeight - 36];

@@ -7,6 +7,7 @@ import { Legend } from "./legend.js";
 import { floats } from "./linalg.js";
 import { Motion } from "./motion.js";
 import { pick } from "./pick.js";
+import { pressed } from "./pressed.js";
 
 const KEPT_TIMES = 500;
 const REST_MS = 180;
@@ -153,9 +154,10 @@ export class View {
     this.acknowledge();
   }
 
-  /** Draw once more with smooth edges when nothing has moved for a while. */
+  /** Draw once more with smooth edges when nothing has moved for a while, and nobody is in the middle of a drag. */
   refine() {
-    this.resting = setTimeout(() => (this.clock.playing ? this.refine() : this.draw(true)), REST_MS);
+    const moves = () => this.clock.playing || pressed();
+    this.resting = setTimeout(() => (moves() ? this.refine() : this.draw(true)), REST_MS);
   }
 
   acknowledge() {

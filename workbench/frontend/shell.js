@@ -7,6 +7,7 @@ import { clock } from "./clock.js";
 import { buildConnection } from "./connection.js";
 import { deepFind, focusOverlap } from "./deep.js";
 
+const JOBS_MS = 400;
 const PLACES = { bar: "div", transport: "div", work: "main", start: "main" };
 const LOGO = `<svg viewBox="0 0 32 20" width="28" height="18" fill="none" stroke="currentColor"
   stroke-width="1.8" stroke-linejoin="round" aria-hidden="true"><path d="M1 10C6 3 10 1.500 12.500 1.500c1.500
@@ -133,15 +134,21 @@ function buildStatus(model) {
   const right = document.createElement("span");
   right.className = "status-right";
   line.append(left, time, keys, right);
+  let later = 0; // what is done by then is not told: each picture of the page takes its time
+  const jobs = () => {
+    clearTimeout(later);
+    later = setTimeout(() => (right.textContent = model.jobs_text), model.jobs_text === "idle" ? 0 : JOBS_MS);
+  };
   const draw = () => {
     left.textContent = model.status_text;
     time.innerHTML = model.measured;
-    right.textContent = model.jobs_text;
     const shown = model.bindings.filter((b) => model.status_keys.includes(b.id));
     keys.innerHTML = shown.map((b) => `<span><kbd>${b.caption}</kbd> ${b.short}</span>`).join("");
   };
   draw();
-  for (const name of ["status_text", "measured", "jobs_text", "status_keys"]) model.on(name, draw);
+  jobs();
+  for (const name of ["status_text", "measured", "status_keys"]) model.on(name, draw);
+  model.on("jobs_text", jobs);
   return line;
 }
 

@@ -31,7 +31,7 @@ class FragmentInspector(pn.viewable.Viewer):
         self._session, self._on_hear = session, on_hear
         super().__init__(**params)
         self.pane = ActionHtml(on_action=self.act)
-        watched = ["result", "other", "selected", "options", "theme", "edits", "side", "kept"]
+        watched = ["result", "other", "selected", "options", "theme", "edits", "side", "kept", "working"]
         session.param.watch(self._update, watched)
         self._update()
 
@@ -59,8 +59,18 @@ class FragmentInspector(pn.viewable.Viewer):
         assert corpus is not None
         return corpus.utterance(unit.recording).phones.intervals[unit.first].centre_s
 
+    def _awaited(self) -> bool:
+        """Whether a result of other settings than those of the shown one is on its way, or about to be."""
+        s, wanted = self._session, self._session.request()
+        return s.working or (
+            s.result is not None and wanted is not None and s.result.request.config != wanted.config
+        )
+
     def _update(self, *events: Any) -> None:
+        """Write it anew; what is written down of a setting waits for the result of that setting."""
         s, details = self._session, None
+        if events and all(e.name in ("edits", "working") for e in events) and self._awaited():
+            return
         if s.result is not None and s.selected < len(s.result.selection.chosen):
             details = fragment_details(s.result, s.selected)
         rate = s.result.trajectory.rate_hz if s.result is not None else 120.0

@@ -114,8 +114,8 @@ class AfterPainted:
         self,
         line: LatestWins,
         deliver: Callable[[Callable[[], None]], None],
-        quiet_s: float = 0.25,
-        patience_s: float = 0.6,
+        quiet_s: float = 0.5,
+        patience_s: float = 3.0,
     ) -> None:
         self._line, self._deliver = line, deliver
         self._quiet_s, self._patience_s = quiet_s, patience_s

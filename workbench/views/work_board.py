@@ -105,7 +105,7 @@ class BlendBoard(pn.viewable.Viewer):
         watch(self._cast, ["cast", "beside"])
         watch(self._select, "selected")
         watch(self._mode, "mode")
-        watch(self._curve, ["weighting", "shape", "curve_weights", "kept", "side"])
+        watch(self._curve_later, ["weighting", "shape", "curve_weights", "kept", "side"])
         watch(self._effect, ["result", "other", "effects", "selected"])
         watch(self._state, ["message", "working", "side", "edits"])
         watch(self._opening, ["status", "fraction", "doing", "corpus", "target_kind", "text"])
@@ -244,6 +244,11 @@ class BlendBoard(pn.viewable.Viewer):
         self.plot.points = [list(p) for p in self._handles[1]] if mine and not session.shape else []
         self.plot.draw(values, session.weighting, other)
 
+    def _curve_later(self, *events: Any) -> None:
+        """Draw the curve in the same picture as the head that moves by it: each picture of a page takes long."""
+        if not self._session.working:
+            self._curve()
+
     def _effect(self, *events: Any) -> None:
         session, result = self._session, self._session.result
         if result is None:
@@ -279,6 +284,7 @@ class BlendBoard(pn.viewable.Viewer):
         elif event.new is not None and self.face.result is not event.new:
             self.board.moves += 1
             self.face.show(event.new)
+            self._curve()
             self._overlays()
 
     def _result(self, *events: Any) -> None:
