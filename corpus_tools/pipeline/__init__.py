@@ -1,12 +1,13 @@
 """Stages over an opened corpus, and the folder that a synthesis writes."""
 
 from corpus_tools.pipeline.cleaning_report import cleaning_lines, cleaning_report, write_cleaning
+from corpus_tools.pipeline.code import code_hash, library_versions
 from corpus_tools.pipeline.head import Animation, Head, animate, prepare_head, vertex_frames
 from corpus_tools.pipeline.health import check_corpus, health_lines
 from corpus_tools.pipeline.opened import OpenCorpus, open_corpus
 from corpus_tools.pipeline.outputs import write_motion, write_synthesis
 from corpus_tools.pipeline.overrides import ban_of, banned_pins, overrides_of, parse_pin, pin_text
-from corpus_tools.pipeline.provenance import code_hash, corpus_provenance, library_versions
+from corpus_tools.pipeline.provenance import corpus_provenance
 from corpus_tools.pipeline.reading import (
     Progress,
     RawCorpus,

@@ -19,8 +19,8 @@ import corpus_tools
 from corpus_tools.config import ConfigBase
 from corpus_tools.core import Audio, Join, Labels, Selection, Tier, Trajectory, Utterance, atomic_folder
 from corpus_tools.io import file_hash, write_textgrid, write_wav
+from corpus_tools.pipeline.code import code_hash, library_versions
 from corpus_tools.pipeline.head import Head
-from corpus_tools.pipeline.provenance import code_hash, library_versions
 from corpus_tools.pipeline.speaking import speech_facts
 from corpus_tools.pipeline.stages import Synthesis
 

@@ -19,6 +19,7 @@ from corpus_tools.io import (
     load_labels,
     read_description,
 )
+from corpus_tools.pipeline.kept import keep, kept_name, read_kept
 from corpus_tools.pipeline.usable import (
     chosen_markers,
     in_order_of,
@@ -229,11 +230,22 @@ def cleaned_recordings(
 ) -> tuple[tuple[Recording, ...], float]:
     """Return the face markers of all recordings, cleaned, and the spread of the head scale taken out.
 
-    Parameters as of :func:`clean_corpus`.
+    Parameters as of :func:`clean_corpus`. What the same program cleaned before, learning from all of the same
+    recordings with the same settings, is taken from the user's cache (:mod:`corpus_tools.pipeline.kept`).
     """
-    cleaned = clean_corpus(raw, config, learn_from, progress)
-    pairs = zip(cleaned.captures, raw.utterances, strict=True)
-    return tuple(Recording(utterance, face_only(capture)) for capture, utterance in pairs), cleaned.scale_sd
+    name = ""
+    if learn_from is None:
+        columns = reference_columns(raw.description, raw.captures[0])
+        settings = (config or Config()).cleaning.model_dump(mode="json")
+        name = kept_name(raw.captures, [settings, columns, raw.description.head_scale])
+    kept = read_kept(name, raw.captures) if name else None
+    if kept is None:
+        cleaned = clean_corpus(raw, config, learn_from, progress)
+        kept = cleaned.captures, cleaned.scale_sd
+        if name:
+            keep(name, raw.captures, *kept)
+    pairs = zip(kept[0], raw.utterances, strict=True)
+    return tuple(Recording(utterance, face_only(capture)) for capture, utterance in pairs), kept[1]
 
 
 def clean_corpus(

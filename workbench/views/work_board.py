@@ -245,7 +245,7 @@ class BlendBoard(pn.viewable.Viewer):
         self.plot.draw(values, session.weighting, other)
 
     def _curve_later(self, *events: Any) -> None:
-        """Draw the curve in the same picture as the head that moves by it: each picture of a page takes long."""
+        """Draw the curve in the same picture as the head that moves by it: every picture takes its time."""
         if not self._session.working:
             self._curve()
 
