@@ -131,8 +131,9 @@ export function renderTransport({ model, el }) {
     playButton.setAttribute("aria-label", label);
   };
   const load = () => {
-    sound.load(decodePcm(model.pcm), model.rate_hz, model.duration_s);
-    phones = model.phones;
+    const loaded = { rate_hz: 16000, duration_s: 0, phones: [], ...model.loaded };
+    sound.load(decodePcm(loaded.pcm), loaded.rate_hz, loaded.duration_s);
+    phones = loaded.phones;
     of.textContent = `s / ${sound.duration.toFixed(3)}`;
     for (const b of [toStart, playButton, loopButton, speedButton]) b.disabled = !(sound.duration > 0);
     show(clk.t, false);
@@ -164,12 +165,11 @@ export function renderTransport({ model, el }) {
   const off = clk.add(show);
   const begin = () => {
     load();
-    if (model.plays && sound.duration > 0) play(0, sound.duration);
+    if (model.loaded.plays && sound.duration > 0) play(0, sound.duration);
   };
-  const later = (action) => setTimeout(action, 0); // after every value of the same update has arrived, in order
-  model.on("revision", () => later(begin));
+  model.on("loaded", begin);
   model.on("theme", paint);
-  model.on("msg:custom", (message) => later(() => sound.duration > 0 && obey[message.op]?.(message)));
+  model.on("msg:custom", (message) => sound.duration > 0 && obey[message.op]?.(message));
   root.vsw = { clock: clk, sound, overview };
   model.on("remove", () => {
     clearTimeout(timer);

@@ -40,12 +40,12 @@ class Transport(pn.custom.JSComponent):
         Space plays wherever the focus is (unless something there needs the key); False: only inside.
     """
 
-    pcm = param.Bytes(default=b"", doc="16-bit mono samples.")
-    rate_hz = param.Integer(default=16000, bounds=(3000, 384000))
-    duration_s = param.Number(default=0.0, bounds=(0, None), doc="Length of the motion; sound may be longer.")
-    phones = param.List(default=[], doc="[start_s, end_s, phone, display class] in order.")
-    revision = param.Integer(default=0, doc="Counts the utterances loaded.")
-    plays = param.Boolean(default=False, doc="Play an utterance as soon as it is loaded.")
+    loaded = param.Dict(
+        default={},
+        doc="""The utterance, as one value: parts would reach the browser one after the other. n: counts the
+        utterances; pcm: 16-bit mono samples; duration_s: length of the motion, sound may be longer;
+        phones: [start_s, end_s, phone, display class] in order; plays: play it as soon as it is there.""",
+    )
     time = param.Number(default=0.0, doc="Where the clock came to rest, s.")
     session = param.String(default="default")
     theme = param.Selector(default="light", objects=list(THEMES))
@@ -73,15 +73,15 @@ class Transport(pn.custom.JSComponent):
         rows: list[list[Any]] | None = None,
         plays: bool = False,
     ) -> None:
-        """Take a sound, the length of what moves with it (s), and rows as of `phones`; play it when asked."""
-        self.param.update(
-            pcm=b"" if audio is None else pcm16(audio.samples),
-            rate_hz=16000 if audio is None else int(audio.rate_hz),
-            duration_s=float(duration_s),
-            phones=rows or [],
-            plays=plays,
-            revision=self.revision + 1,
-        )
+        """Take a sound, the length of what moves with it (s), and rows of its phones; play it when asked."""
+        self.loaded = {
+            "n": self.loaded.get("n", 0) + 1,
+            "pcm": b"" if audio is None else pcm16(audio.samples),
+            "rate_hz": 16000 if audio is None else int(audio.rate_hz),
+            "duration_s": float(duration_s),
+            "phones": rows or [],
+            "plays": plays,
+        }
 
     def play(self, from_s: float = 0.0, to_s: float | None = None) -> None:
         """Play a stretch; a browser allows sound only after the person has touched the page."""

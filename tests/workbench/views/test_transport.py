@@ -28,16 +28,16 @@ def utterance(audio):
 def test_one_load_is_one_update():
     transport = Transport()
     seen = []
-    transport.param.watch(
-        lambda *events: seen.append({e.name for e in events}), ["pcm", "phones", "revision"]
-    )
-    transport.load(utterance(Audio(np.zeros(400), 8000)), phone_set("arpabet"))
-    assert seen == [{"pcm", "phones", "revision"}]
-    assert (transport.rate_hz, transport.duration_s, len(transport.pcm)) == (8000, 0.5, 800)
-    assert [row[3] for row in transport.phones] == ["silence", "bilabial", "silence"]
+    transport.param.watch(lambda *events: seen.append([e.name for e in events]), list(transport.param))
+    transport.load(utterance(Audio(np.zeros(400), 8000)), phone_set("arpabet"), plays=True)
+    assert seen == [["loaded"]]  # two values would be two messages, and the first acted on without the second
+    loaded = transport.loaded
+    assert (loaded["rate_hz"], loaded["duration_s"], len(loaded["pcm"])) == (8000, 0.5, 800)
+    assert (loaded["n"], loaded["plays"]) == (1, True)
+    assert [row[3] for row in loaded["phones"]] == ["silence", "bilabial", "silence"]
 
 
 def test_without_sound_it_is_as_long_as_the_phones():
     transport = Transport()
     transport.load(utterance(None), phone_set("arpabet"))
-    assert (transport.pcm, transport.duration_s) == (b"", 0.5)
+    assert (transport.loaded["pcm"], transport.loaded["duration_s"]) == (b"", 0.5)
