@@ -9,6 +9,7 @@ import pytest
 import corpus_tools.pipeline.reading as reading
 from corpus_tools.config import Config, config_with
 from corpus_tools.core import Capture, Step
+from corpus_tools.demo import simulate_corpus
 from corpus_tools.pipeline import code_hash, kept, open_corpus, read_corpus
 from corpus_tools.pipeline.kept import keep, kept_folder, kept_name, read_kept
 
@@ -16,6 +17,14 @@ from corpus_tools.pipeline.kept import keep, kept_folder, kept_name, read_kept
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory):
+    """Return a simulated corpus of a few sentences: cleaning them is quick."""
+    folder = tmp_path_factory.mktemp("few") / "corpus"
+    simulate_corpus(folder, n_sentences=3)
+    return folder
 
 
 @pytest.fixture
@@ -37,8 +46,8 @@ def capture(seed=0, **values):
     return Capture(motion, 100.0, ("a", "b", "c"), **values)
 
 
-def test_a_corpus_that_was_cleaned_opens_the_same_without_cleaning(simulated_corpus, counted):
-    first, second = open_corpus(simulated_corpus), open_corpus(simulated_corpus)
+def test_a_corpus_that_was_cleaned_opens_the_same_without_cleaning(few, counted):
+    first, second = open_corpus(few), open_corpus(few)
     assert len(counted) == 1
     assert first.scale_sd == second.scale_sd
     for one, two in zip(first.recordings, second.recordings, strict=True):
@@ -49,13 +58,13 @@ def test_a_corpus_that_was_cleaned_opens_the_same_without_cleaning(simulated_cor
         assert one.capture.audio is not None
 
 
-def test_other_settings_are_cleaned_anew_and_a_held_out_cleaning_is_never_kept(simulated_corpus, counted):
-    open_corpus(simulated_corpus)
-    open_corpus(simulated_corpus, config_with(Config(), cleaning__cutoff_hz=7.0))
+def test_other_settings_are_cleaned_anew_and_a_held_out_cleaning_is_never_kept(few, counted):
+    open_corpus(few)
+    open_corpus(few, config_with(Config(), cleaning__cutoff_hz=7.0))
     assert len(counted) == 2
-    raw = read_corpus(simulated_corpus)
+    raw = read_corpus(few)
     for _ in range(2):
-        reading.cleaned_recordings(raw, learn_from=raw.names[:8])
+        reading.cleaned_recordings(raw, learn_from=raw.names[:2])
     assert len(counted) == 4
     assert len(list(kept_folder().iterdir())) == 2
 
@@ -114,8 +123,8 @@ def test_only_the_last_used_are_kept_and_nothing_is_left_half_written(monkeypatc
     assert {p.name for p in kept_folder().iterdir()} == {"a.npz", "c.npz"}
 
 
-def test_a_cache_that_cannot_be_written_costs_time_only(simulated_corpus, tmp_path, counted):
+def test_a_cache_that_cannot_be_written_costs_time_only(few, tmp_path, counted):
     (tmp_path / "cache").write_text("a file in the place of the folder")
-    open_corpus(simulated_corpus)
-    open_corpus(simulated_corpus)
+    open_corpus(few)
+    open_corpus(few)
     assert len(counted) == 2
