@@ -50,12 +50,17 @@ _SURROUNDINGS = frozenset(
 """Failures of files and disks: what a user can mend, and no fault of the program."""
 
 
-def say(text: str = "") -> None:
-    """Print a line for people on stdout; characters that it cannot show are escaped."""
+def say(text: str = "", at_once: bool = False) -> None:
+    """Print a line for people on stdout; characters that it cannot show are escaped.
+
+    `at_once`: a reader at the other end of a pipe gets it now, and not when there is more.
+    """
     if sys.stdout is None:  # it was closed by the caller
         return
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     sys.stdout.write(text.encode(encoding, "backslashreplace").decode(encoding) + "\n")
+    if at_once:
+        sys.stdout.flush()
 
 
 def emit_json(data: Mapping[str, Any]) -> None:

@@ -88,7 +88,7 @@ def workbench(
             return
         server = Workbench(options)
         if port:
-            say(f"The workbench is at http://{host}:{port}/ (stop it with Ctrl-C).")
+            say(f"The workbench is at http://{host}:{port}/ (stop it with Ctrl-C).", at_once=True)
         server.run(stop)
         say("The workbench has stopped.")
 
