@@ -11,9 +11,9 @@ __all__ = ["SAME_CLASS", "how_it_differs", "visible_losses"]
 SAME_CLASS = 1
 """Greatest loss of a phone that stays in its viseme class."""
 
-_SAME_LIPS, _LIPS_TOO_MANY, _NEAR_LIPS = 2, 3, 4
-_LOST = {"rounded": 5, "on teeth": 6, "closed": 7}
-_NEAR = {frozenset({"closed", "on teeth"})}
+_SAME_LIPS, _LIPS_TOO_MANY = 2, 3
+_LOST = {"rounded": 4, "on teeth": 6, "closed": 8}
+_NEAR = {("on teeth", "closed"): 5, ("closed", "on teeth"): 7}
 _DOES = {"closed": "closes the lips", "on teeth": "puts the lip on the teeth", "rounded": "rounds the lips"}
 
 
@@ -27,16 +27,16 @@ def _loss(phones: PhoneClasses, wanted: str, used: str) -> int:
         return _SAME_LIPS
     if not shape:
         return _LIPS_TOO_MANY
-    return _NEAR_LIPS if frozenset({shape, other}) in _NEAR else _LOST[shape]
+    return _NEAR.get((shape, other), _LOST[shape])
 
 
 def visible_losses(phones: PhoneClasses, wanted: str, known: Iterable[str]) -> tuple[int, ...]:
     """Return how much is lost to the eye when each of the `known` phones stands in for `wanted`.
 
     The order is our choice; it follows what a viewer notices first: 0 the phone itself, 1 its viseme class,
-    2 another class with the same lips, 3 lips that do something where nothing is wanted, 4 closed lips for
-    the lip on the teeth or the reverse, then a lost rounding (5), a lost lip on the teeth (6), a lost
-    closure (7).
+    2 another class with the same lips, 3 lips that do something where nothing is wanted, 4 a lost rounding,
+    5 closed lips for the lip on the teeth, 6 a lost lip on the teeth, 7 the lip on the teeth for closed lips,
+    8 a lost closure. So no closure is given up for anything else, and no lip on the teeth for a rounding.
     """
     return tuple(_loss(phones, wanted, used) for used in known)
 

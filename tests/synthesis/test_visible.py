@@ -3,7 +3,7 @@
 import functools
 
 import numpy as np
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from corpus_tools.core import Capture, NoUnitError, Recording
@@ -86,6 +86,9 @@ VISIBLE = ("closed", "on teeth", "rounded", "")
 
 
 @given(INVENTORIES, PAIRS, SEARCHES, st.sampled_from([0, 1]))
+@example({("P", "P"), ("F", "F")}, ("P", "F"), select_greedy, 0)
+@example({("P", "T"), ("F", "F")}, ("P", "F"), select_viterbi, 0)
+@example({("F", "T"), ("P", "W")}, ("F", "W"), select_viterbi, 0)
 def test_what_is_seen_most_is_given_up_last(pairs, wanted, search, side):
     """The more visible phone keeps its class where any unit has that class on its side."""
     used = _used(frozenset(pairs), wanted, search)
