@@ -22,7 +22,10 @@ import platformdirs
 from corpus_tools.core import Capture, OutputError, Step, atomic_file
 from corpus_tools.pipeline.code import code_hash, library_versions
 
-__all__ = ["KEPT_BYTES", "KEPT_FILES", "keep", "kept_folder", "kept_name", "read_kept"]
+__all__ = ["APP", "KEPT_BYTES", "KEPT_FILES", "cache_folder", "keep", "kept_folder", "kept_name", "read_kept"]
+
+APP = "visual-speech-workbench"
+"""Name of the folders of the project among those of the user."""
 
 KEPT_FILES, KEPT_BYTES = 16, 256_000_000
 """Cleaned corpora that are kept, and the largest of which one is kept (our choice: 4 GB at most)."""
@@ -31,9 +34,14 @@ _PLAIN = (str, int, float, bool, type(None))
 Kept = tuple[tuple[Capture, ...], float]
 
 
+def cache_folder() -> Path:
+    """Return the user's cache folder of the project: what lies in it can be made again at any time."""
+    return Path(platformdirs.user_cache_dir(APP, appauthor=False))
+
+
 def kept_folder() -> Path:
     """Return the folder of cleaned motion in the user's cache."""
-    return Path(platformdirs.user_cache_dir("visual-speech-workbench", appauthor=False)) / "cleaned"
+    return cache_folder() / "cleaned"
 
 
 def kept_name(captures: Iterable[Capture], settings: Any) -> str:

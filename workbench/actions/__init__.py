@@ -3,7 +3,6 @@
 from workbench.actions.corpora import CorpusCache, inside_root
 from workbench.actions.desk import Desk
 from workbench.actions.export import (
-    cache_folder,
     export_config,
     export_stem,
     export_target,
@@ -22,7 +21,6 @@ __all__ = [
     "Job",
     "LatestJob",
     "ban_unit",
-    "cache_folder",
     "export_config",
     "export_stem",
     "export_target",

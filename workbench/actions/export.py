@@ -13,11 +13,11 @@ import platformdirs
 
 from corpus_tools.config import ConfigBase, config_from_dict, load_config, write_config
 from corpus_tools.core import ConfigError, InputError, OutputError
+from corpus_tools.pipeline.kept import APP, cache_folder
 from workbench.actions.corpora import inside_root
 from workbench.state import Session
 
 __all__ = [
-    "cache_folder",
     "export_config",
     "export_stem",
     "export_target",
@@ -26,13 +26,7 @@ __all__ = [
     "suggested_path",
 ]
 
-_APP = "visual-speech-workbench"
 _LONGEST_STEM = 40
-
-
-def cache_folder() -> Path:
-    """Return the user's cache folder of the workbench, where the simulated starter corpus is made."""
-    return Path(platformdirs.user_cache_dir(_APP, appauthor=False))
 
 
 def exports_beside(corpus_folder: Path) -> Path:
@@ -48,7 +42,7 @@ def exports_beside(corpus_folder: Path) -> Path:
     """
     corpus_folder = corpus_folder.resolve()
     if corpus_folder.is_relative_to(cache_folder().resolve()):
-        return Path(platformdirs.user_data_dir(_APP, appauthor=False)) / "exports"
+        return Path(platformdirs.user_data_dir(APP, appauthor=False)) / "exports"
     return corpus_folder / "exports"
 
 

@@ -171,7 +171,7 @@ class BlendPage:
         if result is not None and request is not None and result.request.same_target(request):
             self.transport.play()
         else:
-            self._plays_next = True
+            self._plays_next = self.session.working or not self.session.message  # refused: nothing will come
 
     def _not_spoken(self, *events: Any) -> None:
         """Forget what Enter asked for: the text was refused, or left; another must not play by itself."""

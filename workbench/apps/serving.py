@@ -16,7 +16,8 @@ import panel as pn
 
 from corpus_tools.core import InputError
 from corpus_tools.demo import demo_folder
-from workbench.actions import CorpusCache, cache_folder
+from corpus_tools.pipeline.kept import cache_folder
+from workbench.actions import CorpusCache
 from workbench.apps.blend import BlendPage
 from workbench.apps.stopping import StoppedBySignal
 from workbench.views.theme import ASSETS_ROUTE, FRONTEND

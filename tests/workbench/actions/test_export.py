@@ -6,8 +6,8 @@ import pytest
 
 from corpus_tools.config import load_config
 from corpus_tools.core import InputError, OutputError
+from corpus_tools.pipeline.kept import cache_folder
 from workbench.actions import (
-    cache_folder,
     export_config,
     export_stem,
     exports_beside,
