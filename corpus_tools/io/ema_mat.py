@@ -20,6 +20,7 @@ from corpus_tools.core import (
     Tier,
 )
 from corpus_tools.io.formats import AUDIO_READERS, LABEL_READERS, MOTION_READERS
+from corpus_tools.io.mat_layout import struct_names
 from corpus_tools.io.motion_parts import Notes, capture_of, chosen_rate, unit_factor
 
 __all__ = ["read_ema", "read_ema_labels", "read_ema_sound"]
@@ -36,21 +37,22 @@ def _channels(path: Path, what: str) -> dict[str, Any]:
     """Return name -> record of the struct array; nothing in the file is executed."""
     from scipy.io import loadmat  # 0.2 s: only for such files
 
-    with path.open("rb") as stream:
-        start = stream.read(128)
-    if len(start) < 128 or start[126:128] not in (b"IM", b"MI"):
+    data = path.read_bytes()
+    if len(data) < 128 or data[126:128] not in (b"IM", b"MI"):
         raise InputError(f"'{path}' is no MATLAB file of version 5 to 7 with {what}: {_EXPECTED}.")
     try:
-        held = loadmat(path, struct_as_record=True, verify_compressed_data_integrity=True)
+        variables = struct_names(data)
+        structs = [name for name, is_struct in variables.items() if is_struct]
+        held = loadmat(path, struct_as_record=True, variable_names=structs)
     except Exception as error:  # zlib, struct and scipy raise a dozen kinds on a broken file
         reason = " ".join(str(error).split())[:120].rstrip(".") or type(error).__name__
         raise InputError(f"'{path}' cannot be read as a MATLAB file ({reason}): {_EXPECTED}.") from None
-    arrays = [v for k, v in held.items() if not k.startswith("__") and isinstance(v, np.ndarray)]
-    structs = [a for a in arrays if {"NAME", "SRATE", "SIGNAL"} <= set(a.dtype.names or ())]
-    if len(structs) != 1:
-        found = ", ".join(k for k in held if not k.startswith("__"))[:80] or "nothing"
+    arrays = [held[name] for name in structs if isinstance(held.get(name), np.ndarray)]
+    channels = [a for a in arrays if {"NAME", "SRATE", "SIGNAL"} <= set(a.dtype.names or ())]
+    if len(channels) != 1:
+        found = ", ".join(variables)[:80] or "nothing"
         raise InputError(f"'{path}' holds {found}, no channels with {what}: {_EXPECTED}.")
-    return {_text(record["NAME"]): record for record in structs[0].ravel()}
+    return {_text(record["NAME"]): record for record in channels[0].ravel()}
 
 
 def _text(value: Any) -> str:
