@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import numpy as np
 
@@ -30,6 +31,14 @@ class Shown:
         wait_drawn(self.tab)
         # the server builds one page beforehand for nobody; the newest belongs to the tab
         self.view, self.doc = self.views[-1], self.docs[-1]
+        self.wait_heard()
+
+    def wait_heard(self, longest_s=20.0):
+        """Wait until the server knows that the tab draws; what is sent before goes out unasked."""
+        until = time.monotonic() + longest_s
+        while not self.view._line.listening:
+            assert time.monotonic() < until, "the tab draws and the server was not told"
+            self.tab.wait_for_timeout(20)
 
     def call(self, action):
         """Run `action` where the parameters of the session may be set, and wait for it."""

@@ -52,6 +52,11 @@ class LatestWins:
         return self._number
 
     @property
+    def listening(self) -> bool:
+        """Whether somebody is there who acknowledges."""
+        return self._listening
+
+    @property
     def flying(self) -> bool:
         """Whether a change is on its way: somebody listens and has not acknowledged it yet."""
         return bool(self._flying)
