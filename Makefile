@@ -49,6 +49,8 @@ bench: setup
 	  --benchmark-only --benchmark-columns=min,median,rounds
 	$(ONE_THREAD) $(BIN)/python tests/benchmarks/browser_latency.py $(if $(CORPUS),--corpus "$(CORPUS)") \
 	  --json $(RESULTS)/latest-browser.json
+	$(ONE_THREAD) $(BIN)/python tests/benchmarks/hosts_latency.py $(if $(CORPUS),--corpus "$(CORPUS)") \
+	  --json $(RESULTS)/latest-hosts.json
 
 # the notebooks are .py files: JupyterLab opens them as notebooks, and asks no server for news
 lab: setup

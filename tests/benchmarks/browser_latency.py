@@ -44,6 +44,8 @@ MESH = """(() => {
   return walk(document);
 })()"""
 N_FRAMES, RATE_HZ = 361, 120.0
+START, SWING = 0.5, 0.4
+"""Where on its length a slider is when its drag begins, and how far it goes to either side."""
 
 
 def summary(values_ms: Sequence[float]) -> dict[str, float]:
@@ -80,6 +82,11 @@ def playback(tab: Any, seconds: float = 2.5) -> float:
     )
 
 
+def triangle(turn: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return 0 at turn 0, then 1, 0, -1 a quarter apart, in straight lines: no two steps lie close."""
+    return np.abs((4 * turn + 3) % 4 - 2) - 1
+
+
 def measure_drag(tab: Any, slider: Any, n_steps: int = 24) -> tuple[list[float], list[float]]:
     """Drag a slider to and fro with the mouse; return the times from each move to its picture, ms.
 
@@ -98,14 +105,14 @@ def measure_drag(tab: Any, slider: Any, n_steps: int = 24) -> tuple[list[float],
     )
     box = slider.bounding_box()
     y = box["y"] + box["height"] / 2
-    place = [0.5 + 0.4 * np.sin(2 * np.pi * k / n_steps + 0.1) for k in range(n_steps + 1)]
-    tab.mouse.move(box["x"] + place[0] * box["width"], y)
+    place = START + SWING * triangle(np.arange(n_steps + 1) / n_steps)
+    tab.mouse.move(box["x"] + START * box["width"], y)
     tab.mouse.down()
     tab.wait_for_timeout(1000)
     whole, last = [], []
     for share in place[1:]:
         before = tab.evaluate(f"() => {MESH}.ack")
-        tab.mouse.move(box["x"] + share * box["width"], y)
+        tab.mouse.move(box["x"] + float(share) * box["width"], y)
         tab.wait_for_function(f"(n) => {MESH}.ack > n", arg=before, polling=5)
         change = tab.evaluate(f"() => ({{ ...{MESH}.changes.at(-1), moved: globalThis.vswMoved }})")
         whole.append(change["painted"] - change["moved"])
