@@ -22,7 +22,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from benchmarks.browser_latency import MESH, START, bars, measure_drag, playback, summary, wait_drawn
+from benchmarks.browser_latency import MESH, bars, measure_drag, playback, summary, wait_drawn
 from browser import chromium
 from browser.hosts import start_lab, start_panel, stop, write_notebook
 
@@ -55,15 +55,10 @@ LAID_OUT = "pn.Column(view, slider, width=640)"
 
 
 def drag(tab: Any) -> dict[str, Any]:
-    """Return the figures of a view that is drawn and of the slider beneath it."""
+    """Return the figures of a view that is drawn and of the slider beneath it, which is at its middle."""
     tab.evaluate(f"() => {MESH}.clock.seek(1.0)")
     slider = tab.locator(".noUi-target").first
     slider.scroll_into_view_if_needed()
-    box = slider.bounding_box()
-    # a press beside the handle only moves it there: the drag has to begin on it
-    before = tab.evaluate(f"() => {MESH}.ack")
-    tab.mouse.click(box["x"] + START * box["width"], box["y"] + box["height"] / 2)
-    tab.wait_for_function(f"(n) => {MESH}.ack > n", arg=before)
     whole, drawing = measure_drag(tab, slider)
     return {
         "drag_to_pixels": summary(whole),
