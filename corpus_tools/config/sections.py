@@ -201,6 +201,9 @@ class ClosureSettings(Section):
     project: bool = Field(True, description="Close the lips where a bilabial stayed open.")
     components: int = Field(16, ge=1, le=60, description="Principal components that carry the correction.")
     iterations: int = Field(3, ge=1, le=20, description="Rounds of the projection.")
+    hold_s: float = Field(
+        0.042, ge=0, le=0.2, description="So long the lips stay closed, s, if the phone lasts; 0: they touch."
+    )
 
 
 @section("rest")

@@ -131,7 +131,10 @@ def blend_units(
     """Blend aligned fragments, close the lips, rest at the ends: the quick part that a slider calls."""
     blended = blend_pieces(pieces, **config.blend.model_dump(), natural=corpus.natural)
     if config.closure.project:
-        blended = close_bilabials(corpus.lips, blended, utterance, corpus.phones, config.closure.iterations)
+        closure = config.closure
+        blended = close_bilabials(
+            corpus.lips, blended, utterance, corpus.phones, closure.iterations, closure.hold_s
+        )
     return rest_at_ends(
         blended,
         utterance.phones.intervals,

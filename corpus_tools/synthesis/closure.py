@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
-from corpus_tools.core import FloatArray, Interval, Trajectory, step
+from corpus_tools.core import FloatArray, IntArray, Interval, Trajectory, step
 
-__all__ = ["close_lips", "closure_direction"]
+__all__ = ["HOLD_S", "close_lips", "closure_direction"]
 
-MIN_HALF_WIDTH_S = 0.07
-EXTRA_HALF_WIDTH_S = 0.04
+HOLD_S = 0.042
+"""So long closed lips are held (our choice: nine of ten natural closures of GRID speaker s1 last so long, and
+a film of 30 frames a second shows one of its frames)."""
+MIN_FLANK_S = 0.07
+EXTRA_FLANK_S = 0.04
 PRESSED_MM = 0.5
 """How far beyond a closed mouth the projection may press the lips, mm (our choice: the skin's give)."""
 
@@ -43,15 +49,29 @@ def closure_direction(functional: FloatArray, components: FloatArray, variances:
     return np.asarray(((a * variances) @ components / strength).reshape(functional.shape))
 
 
-def _bump(times_s: FloatArray, centre_s: float, half_width_s: float) -> FloatArray:
-    x = np.clip(np.abs(times_s - centre_s) / half_width_s, 0.0, 1.0)
-    return np.asarray(np.cos(0.5 * np.pi * x) ** 2)
+def _bump(times_s: FloatArray, first_s: float, last_s: float, flank_s: float) -> FloatArray:
+    """Return 1 from `first_s` to `last_s`, and cos^2 flanks that take `flank_s` on both sides."""
+    beyond = np.maximum(first_s - times_s, times_s - last_s)
+    return np.asarray(np.cos(0.5 * np.pi * np.clip(beyond / flank_s, 0.0, 1.0)) ** 2)
 
 
 def _pressed(beyond_mm: FloatArray) -> FloatArray:
     """Bound what lies below 0 by -:data:`PRESSED_MM`, with slope 1 at 0: lips give, and do not pass."""
     below = np.minimum(beyond_mm, 0.0)
     return np.asarray(np.maximum(beyond_mm, 0.0) + PRESSED_MM * np.expm1(below / PRESSED_MM))
+
+
+def _inside(times_s: FloatArray, phone: Interval) -> IntArray:
+    """Return the frames of a phone, one at least."""
+    inside = np.flatnonzero((times_s >= phone.start_s) & (times_s <= phone.end_s))
+    return inside if len(inside) else np.array([int(np.argmin(np.abs(times_s - phone.centre_s)))])
+
+
+def _window(aperture_mm: FloatArray, n: int) -> tuple[int, float]:
+    """Return where the `n` frames begin whose widest opening is least, and that opening."""
+    widest = sliding_window_view(aperture_mm, n).max(axis=1)
+    at = int(np.argmin(widest))
+    return at, float(widest[at])
 
 
 def close_lips(
@@ -62,14 +82,17 @@ def close_lips(
     functional: FloatArray,
     direction: FloatArray,
     target_mm: float,
+    hold_mm: float | None = None,
+    hold_s: float = HOLD_S,
     tolerance_mm: float = 0.05,
     iterations: int = 3,
 ) -> Trajectory:
-    """Close the lips in every bilabial that stayed open.
+    """Close the lips in every bilabial that stayed open, or closed for too short a moment to be seen.
 
-    Where the least aperture inside the phone lies above `target_mm`, the face is moved along `direction`
-    under a cos^2 bump around that moment, as wide as the closure of a natural bilabial: half width
-    max(70 ms, half the phone + 40 ms). Lips are only ever closed, never opened, and never pressed
+    The lips are held within `hold_mm` for `hold_s` (or the phone, if it is shorter), where in the phone that
+    takes least, and touch, `target_mm`, at the moment that lies nearest to it: the face is moved along
+    `direction` under a bump with cos^2 flanks as wide as those of a natural bilabial, max(70 ms, half the
+    phone + 40 ms). Lips are only ever closed, never opened, and never pressed
     together by more than :data:`PRESSED_MM`; times without a bilabial near them do not change.
 
     Parameters
@@ -83,6 +106,10 @@ def close_lips(
         From :func:`closure_direction`.
     target_mm : float
         Aperture of a closed mouth: the corpus's own median closure.
+    hold_mm : float, optional
+        Aperture up to which the lips count as closed; `target_mm` by default.
+    hold_s : float, s
+        0: the lips need only touch.
     tolerance_mm : float
     iterations : int
         Rounds; bumps of neighbouring bilabials reach into one another.
@@ -90,28 +117,31 @@ def close_lips(
     Returns
     -------
     Trajectory
-        With a step that says how many closures were made and the largest change, mm.
+        With a step that says how many closures were made and the largest change of the aperture, mm.
     """
     times = np.asarray(trajectory.times_s)
     values = np.array(trajectory.values_mm)
-    aperture = np.einsum("fmk,mk->f", values, functional)
+    aperture = before = np.einsum("fmk,mk->f", values, functional)
     gain = float((direction * functional).sum())
+    n_held = 1 + math.floor(hold_s / float(np.diff(times[:2]).sum() or 1.0) + 1e-9)
+    goals = ((n_held, target_mm if hold_mm is None else max(hold_mm, target_mm)), (1, target_mm))
     lips = [p for p in phones if p.text in bilabials]
-    moved: dict[Interval, float] = {}
+    moved: set[Interval] = set()
     for _ in range(iterations if gain > 0 else 0):
-        for phone in lips:
-            inside = np.flatnonzero((times >= phone.start_s) & (times <= phone.end_s))
-            if not len(inside):
-                inside = np.array([int(np.argmin(np.abs(times - phone.centre_s)))])
-            at = int(inside[np.argmin(aperture[inside])])
-            excess = float(aperture[at]) - target_mm
+        for phone, (n, goal_mm) in itertools.product(lips, goals):
+            inside = _inside(times, phone)
+            n = min(n, len(inside))
+            at, opening = _window(aperture[inside], n)
+            excess = opening - goal_mm
             if excess <= tolerance_mm:
                 continue
-            half = max(MIN_HALF_WIDTH_S, 0.5 * phone.duration_s + EXTRA_HALF_WIDTH_S)
-            wanted = aperture - excess * _bump(times, float(times[at]), half)
+            first, last = times[inside[[at, at + n - 1]]].tolist()
+            flank = max(MIN_FLANK_S, 0.5 * phone.duration_s + EXTRA_FLANK_S)
+            wanted = aperture - excess * _bump(times, first, last, flank)
             reached = np.minimum(aperture, target_mm + _pressed(wanted - target_mm))
             values -= ((aperture - reached) / gain)[:, None, None] * direction
             aperture = reached
-            moved[phone] = moved.get(phone, 0.0) + excess
-    done = step("close_lips", closures=len(moved), largest_mm=round(max(moved.values(), default=0.0), 4))
+            moved.add(phone)
+    largest_mm = round(float((before - aperture).max(initial=0.0)), 4)
+    done = step("close_lips", closures=len(moved), largest_mm=largest_mm)
     return replace(trajectory, values_mm=values, history=(*trajectory.history, done))

@@ -9,7 +9,7 @@ import numpy as np
 
 from corpus_tools.core import FloatArray, Recording, Trajectory, Utterance, frozen
 from corpus_tools.speech import PhoneSet, aperture_functional, bilabial_minima_mm, closure_threshold_mm
-from corpus_tools.synthesis.closure import close_lips, closure_direction
+from corpus_tools.synthesis.closure import HOLD_S, close_lips, closure_direction
 
 __all__ = ["LipModel", "close_bilabials", "lip_model"]
 
@@ -63,7 +63,12 @@ def lip_model(recordings: Sequence[Recording], phones: PhoneSet, n_components: i
 
 
 def close_bilabials(
-    lips: LipModel, trajectory: Trajectory, utterance: Utterance, phones: PhoneSet, iterations: int
+    lips: LipModel,
+    trajectory: Trajectory,
+    utterance: Utterance,
+    phones: PhoneSet,
+    iterations: int,
+    hold_s: float = HOLD_S,
 ) -> Trajectory:
     """Close the lips of a synthesised trajectory in its bilabials; unchanged when the corpus has none."""
     if not np.isfinite(lips.target_mm):
@@ -75,5 +80,7 @@ def close_bilabials(
         functional=lips.functional,
         direction=lips.direction,
         target_mm=lips.target_mm,
+        hold_mm=lips.threshold_mm,
+        hold_s=hold_s,
         iterations=iterations,
     )

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from corpus_tools.core import Interval, Trajectory
 from corpus_tools.synthesis import close_lips, closure_direction
-from corpus_tools.synthesis.closure import PRESSED_MM
+from corpus_tools.synthesis.closure import HOLD_S, PRESSED_MM
 from tests.strategies.fragments import seeds
 
 NAMES = ("lip_in1", "lip_in7", "chin3", "brow0")
@@ -80,6 +80,27 @@ def test_every_bilabial_closes_to_within_a_twentieth_of_a_mm(sentence):
     assert (seen <= aperture(before.values_mm) + 1e-12).all()
 
 
+@given(sentences(), st.sampled_from([0.0, 0.03, HOLD_S, 0.1]))
+def test_lips_stay_closed_as_long_as_asked_or_as_the_phone_lasts(sentence, hold_s):
+    phones, opening = sentence
+    after = close(speak(opening, phones), phones, hold_mm=TARGET_MM + 0.5, hold_s=hold_s)
+    closed = aperture(after.values_mm) <= TARGET_MM + 0.55
+    for phone in phones:
+        inside = closed[(after.times_s >= phone.start_s) & (after.times_s <= phone.end_s)]
+        if phone.text in BILABIALS and len(inside):
+            longest = max(len(run) for run in "".join("x" if c else " " for c in inside).split(" "))
+            assert longest >= min(1 + int(hold_s * 120 + 1e-9), len(inside))
+
+
+def test_a_film_of_thirty_frames_a_second_shows_every_closure():
+    phones = timeline(["SIL", "A", "P", "A", "SIL"], [0.3, 0.2, 0.06, 0.2, 0.3])
+    after = close(speak(lambda t: np.full(len(t), 8.0), phones), phones)
+    seen = aperture(after.values_mm)
+    for phase_s in np.linspace(0, 1 / 30, 9):
+        frames = np.arange(phase_s, 1.0, 1 / 30)
+        assert np.interp(frames, after.times_s, seen).min() <= TARGET_MM + 0.05
+
+
 @given(sentences())
 def test_times_away_from_a_bilabial_are_not_touched(sentence):
     phones, opening = sentence
@@ -130,7 +151,7 @@ def test_the_largest_change_is_reported():
     moved = aperture(before.values_mm) - aperture(after.values_mm)
     assert moved.max() == pytest.approx(4 - TARGET_MM)
     wide = after.times_s[moved > 1e-12]
-    assert wide[-1] - wide[0] == pytest.approx(2 * max(0.07, 0.05 + 0.04), abs=2.1 / 120)
+    assert wide[-1] - wide[0] == pytest.approx(2 * max(0.07, 0.05 + 0.04) + HOLD_S, abs=2.1 / 120)
 
 
 def test_the_change_is_the_likeliest_one_of_this_face():
