@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from corpus_tools.cli.common import PATH, check_out_folder, emit_json, progress_bar, say
+from corpus_tools.cli.contact_facts import contact_facts, contact_line
 from corpus_tools.cli.join_facts import join_facts, join_line
 from corpus_tools.cli.targets import SpeakRequest
 from corpus_tools.config import Config, ConfigBase, config_with, load_config
@@ -106,6 +107,7 @@ def _summary(
         "fragments": [c.unit.key for c in synthesis.selection.chosen],
         "joins": synthesis.selection.n_joins,
         "join_peaks": join_facts(synthesis.trajectory.joins),
+        "contacts": contact_facts(synthesis.contacts),
         "cost": synthesis.selection.total_cost,
         "banned_pins": banned_pins(settings),
         "missing_diphones": [_as_row(m) for m in missing],
@@ -124,7 +126,8 @@ def _tell(
         f"from {counted(len(fragments), 'fragment')} "
         f"({', '.join(fragments)}) in {summary['out']}"
     )
-    say(join_line(summary["join_peaks"]))
+    for line in filter(None, (join_line(summary["join_peaks"]), contact_line(summary["contacts"]))):
+        say(line)
     most, sentences = stand_ins_told(missing, n_phones - 1)
     for sentence in filter(None, (most, *sentences)):
         say(f"▲ {sentence}")

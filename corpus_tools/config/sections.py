@@ -196,11 +196,12 @@ class BlendSettings(Section):
 
 @section("closure")
 class ClosureSettings(Section):
-    """Closing of the lips in bilabials after blending; our own step, beyond paper A."""
+    """Contacts of the lips after blending, p b m and f v; our own step, beyond paper A."""
 
     project: bool = Field(True, description="Close the lips where a bilabial stayed open.")
     components: int = Field(16, ge=1, le=60, description="Principal components that carry the correction.")
     iterations: int = Field(3, ge=1, le=20, description="Rounds of the projection.")
+    on_teeth: bool = Field(True, description="Bring the lower lip to the teeth where an f or v stayed off.")
     hold_s: float = Field(
         0.042, ge=0, le=0.2, description="So long the lips stay closed, s, if the phone lasts; 0: they touch."
     )

@@ -11,7 +11,7 @@ from corpus_tools.methods.settings import Fading, Seconds, Weight, Weighting
 from corpus_tools.methods.training import TrainingSet
 from corpus_tools.synthesis import render_selection
 from corpus_tools.synthesis.blending import BlendMode
-from corpus_tools.synthesis.lips import close_bilabials
+from corpus_tools.synthesis.lips import make_contacts
 
 __all__ = ["CONTEXT_S", "fit_greedy", "fit_viterbi"]
 
@@ -47,7 +47,7 @@ def _fit(
             silence=training.phones.silence,
             **blend,
         )
-        return close_bilabials(lips, motion, utterance, training.phones, ROUNDS) if lips else motion
+        return make_contacts(lips, motion, utterance, training.phones, ROUNDS) if lips else motion
 
     return predict
 

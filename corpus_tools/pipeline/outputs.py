@@ -8,7 +8,7 @@ import json
 import math
 import platform
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from corpus_tools.pipeline.code import code_hash, library_versions
 from corpus_tools.pipeline.head import Head
 from corpus_tools.pipeline.speaking import speech_facts
 from corpus_tools.pipeline.stages import Synthesis
+from corpus_tools.synthesis import Contact
 
 __all__ = ["JOIN_COLUMNS", "write_motion", "write_synthesis"]
 
@@ -59,6 +60,7 @@ def _write_mesh(path: Path, head: Head, synthesis: Synthesis) -> None:
 
 
 _DECIMALS = {"time_s": 4, "overlap_s": 4, "natural_percentile": 1, "flagged": 3, "peak_ratio": 3}
+_DECIMALS |= {"start_s": 4, "end_s": 4, "held_s": 4}
 _DIGITS = 4
 """Significant digits of the gaps (our choice: capture is no better than some hundredths of a millimetre)."""
 
@@ -73,12 +75,12 @@ def _number(column: str, value: float) -> str:
     return f"{round(value, digits):.{min(max(digits, 0), 6)}f}"
 
 
-def _write_joins(path: Path, joins: tuple[Join, ...]) -> None:
+def _write_rows(path: Path, columns: Sequence[str], rows: Sequence[Join] | Sequence[Contact]) -> None:
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(JOIN_COLUMNS)
-        for join in joins:
-            values = [(f.name, getattr(join, f.name)) for f in fields(join)]
+        writer.writerow(columns)
+        for row in rows:
+            values = [(f.name, getattr(row, f.name)) for f in fields(row)]
             writer.writerow([_number(name, v) if isinstance(v, float) else v for name, v in values])
 
 
@@ -164,7 +166,8 @@ def write_synthesis(
         _write_mesh(out / "mesh.npz", head, synthesis)
         write_wav(out / "speech.wav", utterance.audio or _silence(utterance.duration_s))
         write_textgrid(out / "labels.TextGrid", _labels_of(utterance))
-        _write_joins(out / "joins.csv", synthesis.trajectory.joins)
+        _write_rows(out / "joins.csv", JOIN_COLUMNS, synthesis.trajectory.joins)
+        _write_rows(out / "contacts.csv", [f.name for f in fields(Contact)], synthesis.contacts)
         clock = time.perf_counter()
         facts = exports(out) if exports else {}
         export_ms = {"export": 1000 * (time.perf_counter() - clock)} if exports else {}

@@ -18,8 +18,15 @@ from corpus_tools.pipeline.opened import OpenCorpus
 from corpus_tools.pipeline.overrides import overrides_of
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.pipeline.usable import LEAST_RATE_HZ
-from corpus_tools.synthesis import AlignedPieces, align_fragments, blend_pieces, rest_at_ends
-from corpus_tools.synthesis.lips import close_bilabials
+from corpus_tools.synthesis import (
+    AlignedPieces,
+    Contact,
+    align_fragments,
+    blend_pieces,
+    lip_contacts,
+    rest_at_ends,
+)
+from corpus_tools.synthesis.lips import make_contacts
 
 __all__ = ["Synthesis", "align_units", "blend_units", "select_units", "synthesise"]
 
@@ -36,6 +43,8 @@ class Synthesis:
     utterance : Utterance
     selection : Selection
     trajectory : Trajectory
+    contacts : tuple of Contact
+        What the lips have to touch, and whether they do.
     animation : Animation
     vertices_mm : (n_frames, n_vertices, 3) float32, mm
     timings_ms : dict of stage -> ms
@@ -44,6 +53,7 @@ class Synthesis:
     utterance: Utterance
     selection: Selection
     trajectory: Trajectory
+    contacts: tuple[Contact, ...]
     animation: Animation
     vertices_mm: npt.NDArray[np.float32]
     timings_ms: dict[str, float]
@@ -132,8 +142,14 @@ def blend_units(
     blended = blend_pieces(pieces, **config.blend.model_dump(), natural=corpus.natural)
     if config.closure.project:
         closure = config.closure
-        blended = close_bilabials(
-            corpus.lips, blended, utterance, corpus.phones, closure.iterations, closure.hold_s
+        blended = make_contacts(
+            corpus.lips,
+            blended,
+            utterance,
+            corpus.phones,
+            closure.iterations,
+            closure.hold_s,
+            closure.on_teeth,
         )
     return rest_at_ends(
         blended,
@@ -179,9 +195,10 @@ def synthesise(
     lap("align")
     trajectory = blend_units(corpus, utterance, pieces, config)
     lap("blend")
+    contacts = lip_contacts(corpus.lips, trajectory, utterance, corpus.phones)
     animation = animate(head, trajectory)
     lap("retarget")
     vertices = vertex_frames(head, animation)
     lap("deform")
     timings["total"] = sum(timings.values())
-    return Synthesis(utterance, selection, trajectory, animation, vertices, timings)
+    return Synthesis(utterance, selection, trajectory, contacts, animation, vertices, timings)

@@ -5,6 +5,7 @@ from corpus_tools.speech.articulators import (
     CLOSURE_WINDOW_S,
     aperture_functional,
     bilabial_minima_mm,
+    bite_functional,
     closure_offset,
     closure_threshold_mm,
     jaw_mm,
@@ -12,6 +13,7 @@ from corpus_tools.speech.articulators import (
     lip_pair_functionals,
     lip_protrusion_mm,
     lip_width_mm,
+    phone_minima_mm,
 )
 from corpus_tools.speech.engines import ENGINES, Engine, SpeechRequest, prepare_espeak, speak_text
 from corpus_tools.speech.phone_maps import PhoneMap, phone_map, phone_map_names
@@ -31,6 +33,7 @@ __all__ = [
     "SpokenWord",
     "aperture_functional",
     "bilabial_minima_mm",
+    "bite_functional",
     "check_text",
     "closure_offset",
     "closure_threshold_mm",
@@ -43,6 +46,7 @@ __all__ = [
     "normalise_text",
     "phone_map",
     "phone_map_names",
+    "phone_minima_mm",
     "phone_set",
     "phone_set_names",
     "prepare_espeak",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -15,6 +15,7 @@ __all__ = [
     "CLOSURE_WINDOW_S",
     "aperture_functional",
     "bilabial_minima_mm",
+    "bite_functional",
     "closure_offset",
     "closure_threshold_mm",
     "jaw_mm",
@@ -22,6 +23,7 @@ __all__ = [
     "lip_pair_functionals",
     "lip_protrusion_mm",
     "lip_width_mm",
+    "phone_minima_mm",
 ]
 
 APERTURE_PAIRS = (("lip_in1", "lip_in7"), ("lip_in2", "lip_in6"), ("lip_in3", "lip_in5"))
@@ -63,6 +65,25 @@ def aperture_functional(names: Sequence[str]) -> FloatArray:
         weights[upper, 1] += 1.0 / len(pairs)
         weights[lower, 1] -= 1.0 / len(pairs)
     return weights
+
+
+def bite_functional(names: Sequence[str]) -> FloatArray:
+    """Return the weights of how far the lower lip stands below the upper teeth, up to a constant.
+
+    Mean over the lower markers of the pairs of -y: the upper teeth stand still in head-stabilised space, so
+    that the lip is on them where this is least.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Marker names, n_markers.
+
+    Returns
+    -------
+    (n_markers, 3) float64
+        All zero when the layout has no lips.
+    """
+    return np.minimum(aperture_functional(names), 0.0)
 
 
 def lip_pair_functionals(names: Sequence[str]) -> FloatArray:
@@ -115,17 +136,24 @@ def jaw_mm(positions_mm: FloatArray, names: Sequence[str]) -> FloatArray:
     return _distance(positions_mm, names, "nose5", "chin3")
 
 
-def bilabial_minima_mm(capture: Capture, utterance: Utterance, phones: PhoneSet) -> FloatArray:
-    """Return the least aperture within :data:`CLOSURE_WINDOW_S` of each bilabial, mm."""
-    aperture = lip_aperture_mm(capture.positions_mm, capture.names)
+def phone_minima_mm(
+    capture: Capture, utterance: Utterance, labels: Collection[str], functional: FloatArray
+) -> FloatArray:
+    """Return the least value of a functional within :data:`CLOSURE_WINDOW_S` of each of some phones, mm."""
+    signal = np.einsum("fmk,mk->f", capture.positions_mm, functional)
     times = capture.times_s
     found = []
     for phone in utterance.phones:
-        if phone.text in phones.bilabials:
+        if phone.text in labels:
             inside = (times >= phone.start_s - CLOSURE_WINDOW_S) & (times <= phone.end_s + CLOSURE_WINDOW_S)
-            if inside.any() and np.isfinite(aperture[inside]).any():
-                found.append(np.nanmin(aperture[inside]))
+            if inside.any() and np.isfinite(signal[inside]).any():
+                found.append(np.nanmin(signal[inside]))
     return np.array(found)
+
+
+def bilabial_minima_mm(capture: Capture, utterance: Utterance, phones: PhoneSet) -> FloatArray:
+    """Return the least aperture within :data:`CLOSURE_WINDOW_S` of each bilabial, mm."""
+    return phone_minima_mm(capture, utterance, phones.bilabials, aperture_functional(capture.names))
 
 
 def closure_threshold_mm(

@@ -5,6 +5,7 @@ from corpus_tools.synthesis.backoff import Pin
 from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
 from corpus_tools.synthesis.blending import blend_pieces, blend_weights, render_selection
 from corpus_tools.synthesis.closure import close_lips, closure_direction
+from corpus_tools.synthesis.contacts import Contact, lip_contacts
 from corpus_tools.synthesis.effect import EffectCurve, effect_curves, narrowed
 from corpus_tools.synthesis.greedy import greedy_as_printed, select_greedy
 from corpus_tools.synthesis.inertial import InertialMotion, join_inertially
@@ -33,6 +34,7 @@ __all__ = [
     "JOIN_WINDOW_S",
     "WEIGHTINGS",
     "AlignedPieces",
+    "Contact",
     "EffectCurve",
     "InertialMotion",
     "JoinFeatures",
@@ -61,6 +63,7 @@ __all__ = [
     "join_features",
     "join_gaps",
     "join_inertially",
+    "lip_contacts",
     "narrowed",
     "natural_distribution",
     "overlap_lengths",

@@ -78,7 +78,7 @@ def close_lips(
     trajectory: Trajectory,
     phones: Iterable[Interval],
     *,
-    bilabials: Collection[str],
+    labels: Collection[str],
     functional: FloatArray,
     direction: FloatArray,
     target_mm: float,
@@ -99,7 +99,8 @@ def close_lips(
     ----------
     trajectory : Trajectory
     phones : iterable of Interval
-    bilabials : collection of str
+    labels : collection of str
+        The phones: bilabials; or labiodentals, with the way from the lower lip to the teeth as aperture.
     functional : (n_markers, 3)
         Weights of the signed aperture.
     direction : (n_markers, 3)
@@ -125,7 +126,7 @@ def close_lips(
     gain = float((direction * functional).sum())
     n_held = 1 + math.floor(hold_s / float(np.diff(times[:2]).sum() or 1.0) + 1e-9)
     goals = ((n_held, target_mm if hold_mm is None else max(hold_mm, target_mm)), (1, target_mm))
-    lips = [p for p in phones if p.text in bilabials]
+    lips = [p for p in phones if p.text in labels]
     moved: set[Interval] = set()
     for _ in range(iterations if gain > 0 else 0):
         for phone, (n, goal_mm) in itertools.product(lips, goals):
@@ -143,5 +144,7 @@ def close_lips(
             aperture = reached
             moved.add(phone)
     largest_mm = round(float((before - aperture).max(initial=0.0)), 4)
-    done = step("close_lips", closures=len(moved), largest_mm=largest_mm)
+    done = step(
+        "close_lips", phones=sorted({p.text for p in lips}), closures=len(moved), largest_mm=largest_mm
+    )
     return replace(trajectory, values_mm=values, history=(*trajectory.history, done))

@@ -2,38 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from corpus_tools.core import FloatArray, Recording, Trajectory, Utterance, frozen
-from corpus_tools.speech import PhoneSet, aperture_functional, bilabial_minima_mm, closure_threshold_mm
+from corpus_tools.speech import PhoneSet, aperture_functional, bite_functional, phone_minima_mm
 from corpus_tools.synthesis.closure import HOLD_S, close_lips, closure_direction
 
-__all__ = ["LipModel", "close_bilabials", "lip_model"]
+__all__ = ["LipContact", "LipModel", "lip_model", "make_contacts"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LipModel:
-    """How this speaker's lips close.
+class LipContact:
+    """How this speaker makes one contact: of the lips in p b m, of lower lip and upper teeth in f v.
 
     Attributes
     ----------
     functional : (n_markers, 3)
-        Weights of the signed lip aperture.
+        Weights of the distance, mm: the signed aperture, or how far the lower lip stands below the teeth.
     direction : (n_markers, 3)
-        The likeliest change of the face per mm of aperture.
+        The likeliest change of the face per mm of it.
     target_mm : float
-        Median aperture of the corpus's own closures; NaN without bilabials.
+        Median of the corpus's own contacts; NaN without any.
     threshold_mm : float
-        95th percentile of them: above it the lips are open.
+        95th percentile of them: above it there is no contact.
     """
 
     functional: FloatArray
     direction: FloatArray
     target_mm: float
     threshold_mm: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LipModel(LipContact):
+    """How this speaker's lips close, and how the lower one goes to the teeth.
+
+    Attributes
+    ----------
+    functional, direction, target_mm, threshold_mm
+        Of the closure of the lips, as of :class:`LipContact`.
+    on_teeth : LipContact
+    """
+
+    on_teeth: LipContact
+
+
+def _contact(
+    recordings: Sequence[Recording],
+    labels: Collection[str],
+    functional: FloatArray,
+    components: FloatArray,
+    variances: FloatArray,
+) -> LipContact:
+    minima = [phone_minima_mm(r.capture, r.utterance, labels, functional) for r in recordings]
+    every = np.concatenate([*minima, np.zeros(0)])
+    target, threshold = np.percentile(every, [50, 95]).tolist() if len(every) else (float("nan"),) * 2
+    direction = closure_direction(functional, components, variances)
+    return LipContact(frozen(functional), frozen(direction), target, threshold)
 
 
 def lip_model(recordings: Sequence[Recording], phones: PhoneSet, n_components: int) -> LipModel:
@@ -44,43 +72,47 @@ def lip_model(recordings: Sequence[Recording], phones: PhoneSet, n_components: i
     recordings : sequence of Recording
     phones : PhoneSet
     n_components : int
-        Principal components of the face that may take part in a closure.
+        Principal components of the face that may take part in a contact.
     """
     captures = [r.capture for r in recordings]
-    utterances = [r.utterance for r in recordings]
     names = captures[0].names
-    functional = aperture_functional(names)
     frames = np.concatenate([np.asarray(c.positions_mm).reshape(c.n_frames, -1) for c in captures])
     centred = frames - frames.mean(axis=0)
     values, vectors = np.linalg.eigh(centred.T @ centred / max(1, len(centred) - 1))
     keep = slice(-min(n_components, len(values)), None)
-    direction = closure_direction(functional, vectors[:, keep].T, values[keep])
-    minima = [bilabial_minima_mm(c, u, phones) for c, u in zip(captures, utterances, strict=True)]
-    every = np.concatenate([*minima, np.zeros(0)])
-    target = float(np.median(every)) if len(every) else float("nan")
-    threshold = closure_threshold_mm(captures, utterances, phones)
-    return LipModel(frozen(functional), frozen(direction), target, threshold)
+    moving = vectors[:, keep].T, values[keep]
+    closed = _contact(recordings, phones.bilabials, aperture_functional(names), *moving)
+    on_teeth = _contact(recordings, phones.labiodentals, bite_functional(names), *moving)
+    return LipModel(closed.functional, closed.direction, closed.target_mm, closed.threshold_mm, on_teeth)
 
 
-def close_bilabials(
+def make_contacts(
     lips: LipModel,
     trajectory: Trajectory,
     utterance: Utterance,
     phones: PhoneSet,
     iterations: int,
     hold_s: float = HOLD_S,
+    on_teeth: bool = True,
 ) -> Trajectory:
-    """Close the lips of a synthesised trajectory in its bilabials; unchanged when the corpus has none."""
-    if not np.isfinite(lips.target_mm):
-        return trajectory
-    return close_lips(
-        trajectory,
-        utterance.phones,
-        bilabials=phones.bilabials,
-        functional=lips.functional,
-        direction=lips.direction,
-        target_mm=lips.target_mm,
-        hold_mm=lips.threshold_mm,
-        hold_s=hold_s,
-        iterations=iterations,
-    )
+    """Bring the lower lip to the teeth in f and v, then close the lips in p, b and m, where they are not.
+
+    A contact that the corpus does not have is left as it is.
+    """
+    wanted: list[tuple[LipContact, Collection[str]]] = [(lips, phones.bilabials)]
+    if on_teeth:
+        wanted.insert(0, (lips.on_teeth, phones.labiodentals))
+    for contact, labels in wanted:
+        if np.isfinite(contact.target_mm):
+            trajectory = close_lips(
+                trajectory,
+                utterance.phones,
+                labels=labels,
+                functional=contact.functional,
+                direction=contact.direction,
+                target_mm=contact.target_mm,
+                hold_mm=contact.threshold_mm,
+                hold_s=hold_s,
+                iterations=iterations,
+            )
+    return trajectory

@@ -21,7 +21,16 @@ from corpus_tools.io import find_recordings, read_description, read_labels
 from corpus_tools.pipeline.outputs import JOIN_COLUMNS
 from tests.cli.answers import START, last_json
 
-FILES = {"motion.npz", "mesh.npz", "speech.wav", "labels.TextGrid", "joins.csv", "manifest.json", "run.json"}
+FILES = {
+    "motion.npz",
+    "mesh.npz",
+    "speech.wav",
+    "labels.TextGrid",
+    "joins.csv",
+    "contacts.csv",
+    "manifest.json",
+    "run.json",
+}
 
 
 def digest(folder):
@@ -58,6 +67,11 @@ def test_synth_writes_the_whole_folder_and_leaves_the_corpus_alone(
     rows = list(csv.DictReader((tmp_path / "o/joins.csv").read_text().splitlines()))
     assert tuple((tmp_path / "o/joins.csv").read_text().splitlines()[0].split(",")) == JOIN_COLUMNS
     assert len(rows) == summary["joins"] == summary["join_peaks"]["n"]
+    contacts = list(csv.DictReader((tmp_path / "o/contacts.csv").read_text().splitlines()))
+    assert summary["contacts"]["closed"]["n"] == sum(c["kind"] == "closed" for c in contacts) > 0
+    assert summary["contacts"]["missed"] == []
+    n = summary["contacts"]["closed"]["n"]
+    assert f"{n} of {n} closure" in out
     ratios = [float(r["peak_ratio"]) for r in rows]
     assert summary["join_peaks"]["above_p95"] == sum(r > 1 for r in ratios)
     assert summary["join_peaks"]["worst"]["ratio"] == max(ratios)

@@ -19,6 +19,7 @@ FILES = {
     "mesh.npz",
     "speech.wav",
     "labels.TextGrid",
+    "contacts.csv",
     "joins.csv",
     "manifest.json",
     "run.json",
@@ -79,6 +80,16 @@ def test_sound_and_labels_are_those_of_the_utterance(written, made):
     labels = read_labels(written / "labels.TextGrid")
     assert [i.text for i in labels.tier("phones")] == list(utterance.labels)
     assert " ".join(i.text for i in labels.tier("words") if i.text) == utterance.text
+
+
+def test_contacts_are_rows_too(written, made):
+    with (written / "contacts.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert ",".join(rows[0]) == "phone,start_s,end_s,kind,time_s,nearest_mm,held_s,made"
+    assert [(r["phone"], r["kind"]) for r in rows] == [(c.phone, c.kind) for c in made[1].contacts]
+    for row, contact in zip(rows, made[1].contacts, strict=True):
+        assert row["made"] == str(contact.made)
+        assert float(row["nearest_mm"]) == pytest.approx(contact.nearest_mm, rel=5.1e-4)
 
 
 def test_joins_are_rows_with_the_columns_that_scripts_read(written, made):

@@ -126,7 +126,9 @@ def test_lips_close_in_every_bilabial_and_open_in_open_vowels(opened_corpus):
 
 def test_a_corpus_without_bilabials_is_blended_and_left_unclosed(opened_corpus, utterance):
     config = Config()
-    mute = dataclasses.replace(opened_corpus.lips, target_mm=float("nan"), threshold_mm=float("nan"))
+    nothing = {"target_mm": float("nan"), "threshold_mm": float("nan")}
+    on_teeth = dataclasses.replace(opened_corpus.lips.on_teeth, **nothing)
+    mute = dataclasses.replace(opened_corpus.lips, on_teeth=on_teeth, **nothing)
     without = dataclasses.replace(opened_corpus, lips=mute)
     unclosed = blended(opened_corpus, utterance, config_with(config, closure__project=False))
     np.testing.assert_array_equal(blended(without, utterance, config).values_mm, unclosed.values_mm)

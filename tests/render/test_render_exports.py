@@ -73,7 +73,7 @@ def test_a_disk_that_takes_no_more_in_the_middle_of_an_export_leaves_nothing(mad
 
 @pytest.mark.parametrize("name", list(EXPORTERS))
 def test_every_export_is_listed_and_twice_the_same(made, tmp_path, name):
-    plain = {"motion.npz", "mesh.npz", "speech.wav", "labels.TextGrid", "joins.csv"}
+    plain = {"motion.npz", "mesh.npz", "speech.wav", "labels.TextGrid", "joins.csv", "contacts.csv"}
     found = []
     for run in ("a", "b"):
         shares = write(tmp_path / run, made, [name])

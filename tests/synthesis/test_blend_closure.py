@@ -47,7 +47,7 @@ def close(trajectory, phones, **settings):
     return close_lips(
         trajectory,
         phones,
-        bilabials=BILABIALS,
+        labels=BILABIALS,
         functional=FUNCTIONAL,
         direction=direction(),
         target_mm=TARGET_MM,
@@ -181,7 +181,7 @@ def test_a_face_whose_lips_never_move_is_left_alone():
     phones = timeline(["SIL", "P", "SIL"], [0.2, 0.1, 0.2])
     before = speak(lambda t: np.full(len(t), 4.0), phones)
     after = close_lips(
-        before, phones, bilabials=BILABIALS, functional=FUNCTIONAL, direction=nothing, target_mm=TARGET_MM
+        before, phones, labels=BILABIALS, functional=FUNCTIONAL, direction=nothing, target_mm=TARGET_MM
     )
     np.testing.assert_array_equal(after.values_mm, before.values_mm)
 
