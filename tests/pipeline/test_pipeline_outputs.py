@@ -150,7 +150,7 @@ def test_nothing_remains_when_it_is_interrupted(made, provenance, tmp_path, monk
     def interrupted(*args):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(outputs, "_write_joins", interrupted)
+    monkeypatch.setattr(outputs, "_write_rows", interrupted)
     head, synthesis = made
     with pytest.raises(KeyboardInterrupt):
         write_synthesis(tmp_path / "out", synthesis, head, Config(), provenance, REQUEST)
