@@ -97,6 +97,38 @@ def test_nothing_changes_while_the_page_is_on_its_way(browser_page, served):
     until(browser_page, lambda: page.session.result is not None)
 
 
+def has_focus(field):
+    return field.evaluate("e => e.getRootNode().activeElement === e")
+
+
+def test_a_picked_sentence_and_esc_let_the_keys_go(browser_page, served):
+    session = drawn(browser_page, served)
+    picker = browser_page.get_by_placeholder("Sentence: type a name")
+    slider = browser_page.get_by_role("slider", name=re.compile("Longest overlap"))
+    picker.fill("time0")
+    picker.press("ArrowDown")
+    picker.press("Enter")
+    until(browser_page, lambda: session.sentence == session.sentences[1])
+    until(browser_page, lambda: not has_focus(picker) and session.sentence in picker.input_value())
+    settled(browser_page, session)
+    browser_page.keyboard.press("Space")
+    until(browser_page, lambda: playing(browser_page))
+    browser_page.keyboard.press("Space")
+    picker.click()
+    browser_page.get_by_role("option").nth(2).click()
+    until(browser_page, lambda: session.sentence == session.sentences[2] and not has_focus(picker))
+    until(browser_page, lambda: session.sentence in picker.input_value())
+    picker.click()  # its list is open
+    picker.press("Escape")
+    until(browser_page, lambda: not has_focus(picker))
+    for field in (slider, browser_page.get_by_label("Config file")):
+        field.focus()
+        field.press("Escape")
+        until(browser_page, lambda field=field: not has_focus(field))
+    browser_page.keyboard.press("2")
+    until(browser_page, lambda: session.weighting == "raised-cosine")
+
+
 def test_next_sentence_and_presets_by_key(browser_page, served):
     session = drawn(browser_page, served)
     first = session.sentence
@@ -301,8 +333,9 @@ def test_a_typed_sentence_is_spoken_and_one_without_words_is_refused_in_its_plac
     browser_page.get_by_text("Type a sentence above").wait_for()
     field = browser_page.get_by_placeholder("Type a sentence")
     played = Played(browser_page)
-    field.fill("  the time is half past nine ")
-    field.press("Enter")
+    until(browser_page, lambda: has_focus(field))  # the caret is in it without a click
+    browser_page.keyboard.type("  the time is half past nine ")
+    browser_page.keyboard.press("Enter")
     played.wait("began", 1)  # what was typed is heard and seen
     assert session.result.request.text == "the time is half past nine"
     browser_page.keyboard.press("Space")  # the field has let the keys go

@@ -6,6 +6,7 @@
 import { clock } from "./clock.js";
 import { buildConnection } from "./connection.js";
 import { deepFind, focusOverlap } from "./deep.js";
+import { caretFollows, leaveFields } from "./focus.js";
 
 const JOBS_MS = 400;
 const PLACES = { bar: "div", transport: "div", work: "main", start: "main" };
@@ -48,13 +49,6 @@ function typing(event) {
     if (n.tagName === "INPUT") return !["range", "checkbox", "radio", "button"].includes(n.type);
     return n.getAttribute?.("role") === "listbox" && n.classList?.contains("MuiList-root");
   });
-}
-
-/** Enter and Esc end the typing of a text: the keys of the page act again. A list that is open keeps them. */
-function leaveField(event, name) {
-  const field = event.composedPath()[0];
-  const text = field?.tagName === "INPUT" && field.type === "text" && field.role !== "combobox";
-  if (text && (name === "Enter" || name === "Escape")) setTimeout(() => field.blur(), 0);
 }
 
 function keyName(event) {
@@ -218,7 +212,6 @@ export function renderShell({ model, el, view }) {
   const onKey = (event) => {
     if (event.defaultPrevented) return;
     const name = keyName(event);
-    leaveField(event, name);
     const found = findBinding(model.bindings, name);
     if (!found || found[0].scope === "transport") return;
     if (typing(event) && name !== "Escape") return;
@@ -232,6 +225,8 @@ export function renderShell({ model, el, view }) {
     if (!local.handled) model.send_msg({ type: "key", id: binding.id, index });
   };
   document.addEventListener("keydown", onKey);
+  leaveFields(root);
+  caretFollows(root.querySelector(".bar"));
   model.on("remove", () => document.removeEventListener("keydown", onKey));
   whenMounted(root.querySelector(".bar"), () => model.send_msg({ type: "ready" }));
   return root;

@@ -71,7 +71,7 @@ class AppBar(pn.viewable.Viewer):
         )
         controls.tie(self.sentence, "sentence")
         self.kind = preset_buttons(controls, "What is spoken", "target_kind", _KINDS)
-        self.kind.param.update(sizing_mode=None, width=150, margin=(6, 6))
+        self.kind.param.update(sizing_mode=None, width=150, margin=(6, 6), css_classes=["kind"])
         self.text = controls.make(
             pmui.TextInput,
             label="",
@@ -82,6 +82,7 @@ class AppBar(pn.viewable.Viewer):
             width=420,
             margin=(3, 2),
             visible=False,
+            css_classes=["typed"],
         )
         self.text.param.watch(lambda event: self._typed(event.new), "value")
         self.text.param.watch(lambda _: self._entered(), "enter_pressed")
