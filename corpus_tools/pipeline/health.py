@@ -151,16 +151,36 @@ def _usable(
     return usable
 
 
+def _slips(cleaned: CleanedCorpus, names: Sequence[str]) -> dict[str, list[str]]:
+    """Return what slipped in each recording, in sentences, by the name of the recording."""
+    told: dict[str, list[str]] = {}
+    for name, capture, slips in zip(names, cleaned.captures, cleaned.slips, strict=True):
+        for slip in slips:
+            what = "the head markers" if slip.marker < 0 else f"marker {capture.names[slip.marker]}"
+            at_s = float(capture.times_s[slip.frame])
+            told.setdefault(name, []).append(f"{what} slipped by {slip.size_mm:.1f} mm at {at_s:.2f} s.")
+    return told
+
+
 def _advice(
-    description: CorpusDescription, usable: Sequence[tuple[Capture, Utterance]], phones: PhoneSet
+    description: CorpusDescription,
+    usable: Sequence[tuple[Capture, Utterance]],
+    phones: PhoneSet,
+    entries: Sequence[_Entry],
 ) -> dict[str, Any]:
-    """Return head-scale spread and closure offset with the lines that would set them."""
+    """Return head-scale spread and closure offset with the lines that would set them.
+
+    What slipped is entered in the problems of its recording.
+    """
     if not usable:
         return {}
     captures = [capture for capture, _ in usable]
     columns = reference_columns(description, captures[0])
     names = [utterance.name for _, utterance in usable]
     cleaned = clean_captures(captures, columns, allow_scale=True, names=names)
+    slips = _slips(cleaned, names)
+    for entry in entries:
+        entry.problems.extend(slips.get(entry.files.id, ()))
     scale_sd = float(cleaned.scale_sd)
     offset = closure_offset(cleaned.captures, [utterance for _, utterance in usable], phones)
     lines: list[str] = []
@@ -232,7 +252,7 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
     check_word_tier(description, [e.labels for e in entries if e.labels is not None])
     told = [*what_is_lacking(description), *what_is_left_out(description, [f.id for f in files])]
     try:
-        advice = _advice(description, _usable(description, entries, phones), phones)
+        advice = _advice(description, _usable(description, entries, phones), phones, entries)
     except CorpusError as error:  # no rigid markers: a corpus that is only read needs none
         if any(e.utterance for e in entries):
             raise

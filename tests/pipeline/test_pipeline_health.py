@@ -1,6 +1,7 @@
 """The report of a corpus: constructed faults are found, each where it is, and the advice sets them right."""
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -170,6 +171,22 @@ def test_a_recording_without_its_head_markers_does_not_spoil_the_others(spoiled,
     report = check_corpus(spoiled)
     assert "reference markers" in only_problem(report, "time02")
     assert report["head_scale_sd"] < 0.003
+
+
+def test_a_jig_that_slips_is_found_where_it_does(spoiled, alter):
+    def slip(capture):
+        positions = np.array(capture.positions_mm)
+        positions[200:, 66:] += [2.0, 0.0, 0.0]
+        return changed(capture, positions_mm=positions)
+
+    alter("time02", slip)
+    report = check_corpus(spoiled)
+    found = re.fullmatch(
+        r"the head markers slipped by (\d\.\d) mm at (\d\.\d\d) s\.", only_problem(report, "time02")
+    )
+    assert float(found[1]) == pytest.approx(2.0, abs=0.3)
+    assert float(found[2]) == pytest.approx(200 / 120, abs=0.05)
+    assert any("time02: the head markers slipped" in line for line in health_lines(report))
 
 
 def test_motion_that_ends_before_the_speech_is_found(spoiled, alter):

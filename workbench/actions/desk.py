@@ -220,19 +220,20 @@ class Desk:
         if corpus is None or self._check_of is corpus:
             return
         self._check_of = corpus
-        session.param.update(facts=None, check_doing="", check_trouble="")
+        session.param.update(facts=None, check_doing="reading", check_trouble="")
         self._checks.submit(lambda job: corpus_facts(corpus, job.progress), cancel_running=True)
 
     def _checking(self, number: int, fraction: float, what: str) -> None:
         self.session.check_doing = f"{what}, {100 * fraction:.0f} %"
 
     def _checked(self, number: int, facts: CorpusFacts) -> None:
+        self.session.check_doing = ""
         if facts.corpus is self.session.corpus:
             self.session.facts = facts
 
     def _not_checked(self, number: int, sentence: str) -> None:
         self._check_of = None
-        self.session.check_trouble = sentence
+        self.session.param.update(check_doing="", check_trouble=sentence)
 
     def _others_speak(self, *events: Any) -> None:
         """Let the heads beside the first speak the same motion."""

@@ -143,7 +143,7 @@ class BlendPage:
     def _watch(self) -> None:
         watch = self.session.param.watch
         watch(self._theme, "theme")
-        watch(self._status, ["status", "working", "result", "corpus", "fraction", "message"])
+        watch(self._status, ["status", "working", "result", "corpus", "fraction", "message", "check_doing"])
         watch(self._corpus, "corpus")
         watch(self._opening, "status")
         watch(self._sound, "result")
@@ -298,6 +298,8 @@ class BlendPage:
             jobs = f"opening, {100 * s.fraction:.0f} %"
         elif s.working:
             jobs = "computing · Esc cancels"
+        elif s.check_doing:
+            jobs = "checking the corpus"
         self.shell.param.update(status_text=left, measured=measured, jobs_text=jobs)
 
     def close(self) -> None:

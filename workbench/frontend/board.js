@@ -22,12 +22,18 @@ function slot(model, name) {
   return place;
 }
 
-function legend() {
+/** What the lines are: solid what is shown, dashed the other of A and B where they differ. */
+function legend(model) {
   const key = document.createElement("span");
   key.className = "legend";
-  key.innerHTML =
-    '<i class="now"></i>now <i class="other"></i>A <i class="recorded"></i>recorded ' +
-    '<i class="natural"></i>natural 10–90 % <i class="threshold"></i>closed below';
+  const draw = () => {
+    const other = model.side === "A" ? "B" : "A";
+    key.innerHTML =
+      `<i class="now"></i>${model.compared ? `${model.side}, shown <i class="other"></i>${other} ` : "now "}` +
+      '<i class="recorded"></i>recorded <i class="natural"></i>natural 10–90 % <i class="threshold"></i>closed below';
+  };
+  for (const name of ["side", "compared"]) model.on(name, draw);
+  draw();
   return key;
 }
 
@@ -168,6 +174,17 @@ function computing(model) {
   return busy;
 }
 
+/** Let the buttons of g(u) say the name that the config has for it: some are cut. */
+function presetsSlot(model) {
+  const place = slot(model, "presets");
+  place.addEventListener("pointerover", (event) => {
+    const button = event.composedPath().find((node) => node.tagName === "BUTTON");
+    const name = model.preset_names[button?.getAttribute("aria-label")];
+    if (name) button.title = model.unused ? "" : `${name} in the config`;
+  });
+  return place;
+}
+
 /** Panel entry point. */
 export function renderBoard({ model, el }) {
   el.style.width = el.style.height = "100%";
@@ -182,7 +199,7 @@ export function renderBoard({ model, el }) {
 
   const curve = section("weighting", "g(u) at the joins");
   curve.head.append(slot(model, "mode"));
-  const presets = slot(model, "presets");
+  const presets = presetsSlot(model);
   curve.card.append(presets, slot(model, "plot"), slot(model, "sliders"));
 
   const lane = section("fragments", "Fragments");
@@ -190,7 +207,7 @@ export function renderBoard({ model, el }) {
   sub.className = "sub";
   const chip = document.createElement("span");
   chip.className = "chip";
-  lane.head.append(sub, legend(), chip, views(model));
+  lane.head.append(sub, legend(model), chip, views(model));
   const notice = document.createElement("div");
   notice.className = "notice err band";
   notice.setAttribute("role", "alert");

@@ -6,6 +6,7 @@ import { fitText } from "./lane_axes.js";
 
 const LEAST_RANGE = 2.4;
 const LONGEST_S = 0.3;
+const NAMES_APART = 20;
 
 function line(ctx, x0, y0, x1, y1) {
   ctx.beginPath();
@@ -80,8 +81,8 @@ function drawNamed(ctx, box, x, y, text, colour, p, above, clear = 0) {
 /**
  * @param box [left, top, right, bottom]
  * @param {{overlaps: number[], curves: {name: string, ratios: number[]}[], now: object, other: object}} data
- *   `now` and `other`: {name, overlap, ratio} of the present setting and of setting A (null: the same; alike: of
- *   the same fragments, so that its curve is one of those here)
+ *   `now` and `other`: {name, overlap, ratio} of the setting that is shown (`side`) and of the other of A and B
+ *   (null: the same; alike: of the same fragments, so that its curve is one of those here)
  */
 export function drawEffect(ctx, box, data, p) {
   const [x0, y0, x1, y1] = box;
@@ -119,12 +120,12 @@ export function drawEffect(ctx, box, data, p) {
     const ratio = ratioAt(data.overlaps, c.ratios, now.overlap);
     if (Number.isFinite(ratio)) drawPoint(ctx, toX(now.overlap), toY(ratio), 3, p.nat);
   }
-  const letters = other ? ["A ", "B "] : ["", ""];
+  const letters = !other ? ["", ""] : data.side === "A" ? ["B ", "A "] : ["A ", "B "];
   if (other && Number.isFinite(other.ratio)) {
     const text = letters[0] + other.ratio.toFixed(2);
     const [above, apart] = [other.ratio > now.ratio, Math.abs(toY(other.ratio) - toY(now.ratio))];
-    // B's name stands above its point: A's goes above that when the two would meet
-    const clear = above && apart < 14 ? 14 - apart : 0;
+    // the name of what is shown stands above its point: the other's goes above that when the two would meet
+    const clear = above && apart < NAMES_APART ? NAMES_APART - apart : 0;
     drawNamed(ctx, box, toX(other.overlap), toY(other.ratio), text, p.other, p, above, clear);
   }
   if (Number.isFinite(now.ratio)) {

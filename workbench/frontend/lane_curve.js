@@ -79,7 +79,7 @@ function drawCurve(ctx, box, view, values, rate, start, range, style) {
   ctx.lineWidth = 1;
 }
 
-/** The lip aperture: natural range, recorded, setting A, each fragment's own continuation, and the blend. */
+/** The lip aperture: natural range, recorded, the setting not shown (dashed), each fragment's own continuation, and the blend. */
 export function drawAperture(ctx, box, view, data, p) {
   const { curves } = data;
   const [top, bottom] = box.curve;

@@ -12,7 +12,7 @@ function drawGutter(ctx, box, p) {
     ["fragments", "Chosen", "source"],
     ["others", "Others", ""],
     ["curve", "Aperture", "mm"],
-    ["joins", "Joins", "accel. ÷ p95"],
+    ["joins", "Joins: peak", "÷ natural p95"],
   ];
   ctx.textAlign = "left";
   for (const [row, title, hint] of names) {

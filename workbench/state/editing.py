@@ -128,6 +128,11 @@ class Editing(param.Parameterized):
         self.param.update(kept=self.values, side="B", edits=self.edits + 1)
 
     @property
+    def phones(self) -> tuple[str, ...]:
+        """Labels of the phones of the target; empty while they are not known."""
+        return ()
+
+    @property
     def values(self) -> dict[str, Any]:
         """Every editable value."""
         return {name: getattr(self, name) for name in EDITABLE}
@@ -155,7 +160,7 @@ class Editing(param.Parameterized):
                 self._restoring = False
         if self.history.entries:
             self.side = "B"
-            self.history.record(self.values, time.time())
+            self.history.record(self.values, time.time(), phones=self.phones)
             self.edits += 1
 
     def undo(self) -> bool:
@@ -210,4 +215,5 @@ class Editing(param.Parameterized):
         if not self.kept:
             return ""
         here, other = {n: getattr(self, n) for n in SETTINGS}, self.other_settings
-        return change_text(here, other) if self.side == "A" else change_text(other, here)
+        before, after = (here, other) if self.side == "A" else (other, here)
+        return change_text(before, after, self.phones)

@@ -64,7 +64,7 @@ class Effects:
 
 
 def effect_data(
-    effects: Effects | None, result: Result, other: Result | None, join: int
+    effects: Effects | None, result: Result, other: Result | None, join: int, side: str = "B"
 ) -> dict[str, object]:
     """Return the effect plot of one join as plain data.
 
@@ -74,8 +74,10 @@ def effect_data(
         None while they are being measured: the present dots alone are shown then.
     result : Result
     other : Result or None
-        Of setting A.
+        Of the setting that is not shown.
     join : int
+    side : "A" or "B"
+        Which of the two settings `result` is.
     """
     if join >= len(result.ratios):
         return {"overlaps": [], "curves": [], "now": None, "other": None}
@@ -86,6 +88,7 @@ def effect_data(
     same = same and other is not None and other.request.config.blend.mode == mode  # else on another axis
     return {
         "axis": _AXES[mode],
+        "side": side,
         "overlaps": list(OVERLAPS_S) if fits else [],
         "curves": [{"name": c.weighting, "ratios": [float(r) for r in c.ratios[:, join]]} for c in curves],
         "now": _dot(result, join),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 __all__ = ["Entry", "History", "change_text"]
+
+_TARGET = ("target_kind", "sentence", "text")
 
 TOGETHER_S = 1.2
 """A slider that moves again within this time goes on with the same entry."""
@@ -27,8 +29,6 @@ _NAMES = {
     "held_out": "held out",
     "mode": "join",
     "curve_weights": "own curve",
-    "pins": "pins",
-    "bans": "bans",
 }
 _CURVE = {"curve_weights", "weighting", "shape"}
 _SLIDES = ({"shape"}, {"overlap_s"}, {"inertial_s"})
@@ -72,20 +72,43 @@ def _value_text(name: str, value: Any) -> str:
         return f"{value:+.2f}"
     if name == "curve_weights":
         return "moved"
-    if name in ("pins", "bans"):
-        return str(len(value))
     if name == "held_out":
         return "yes" if value else "no"
     text = str(value) or "none"
     return text if len(text) <= 28 else f"{text[:27]}…"
 
 
-def change_text(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
+def _place_text(pin: str, phones: Sequence[str]) -> tuple[str, str]:
+    """Return the place of a pin by its first and last phone, and the unit that speaks it."""
+    place, _, unit = pin.partition("=")
+    first, last = (int(n) for n in place.split("-"))
+    if last < len(phones):
+        return f"{phones[first]}–{phones[last]}", unit
+    return f"phones {first}–{last}", unit
+
+
+def _picks_text(before: Mapping[str, Any], after: Mapping[str, Any], phones: Sequence[str]) -> list[str]:
+    """Return which pins and bans came and went; the pins of another target are no change."""
+    parts = []
+    if all(before.get(n) == after.get(n) for n in _TARGET):
+        old, new = before.get("pins", ()), after.get("pins", ())
+        again = {p.partition("=")[0] for p in new}
+        gone = [p for p in old if p not in new and p.partition("=")[0] not in again]
+        parts += ["pin {} → {}".format(*_place_text(p, phones)) for p in new if p not in old]
+        parts += ["unpin {} ({})".format(*_place_text(p, phones)) for p in gone]
+    old, new = before.get("bans", ()), after.get("bans", ())
+    parts += [f"ban {b}" for b in new if b not in old]
+    return parts + [f"allow {b}" for b in old if b not in new]
+
+
+def change_text(before: Mapping[str, Any], after: Mapping[str, Any], phones: Sequence[str] = ()) -> str:
     """Return a change in words, empty when nothing changed: "overlap 120 ms → 80 ms".
 
     Parameters
     ----------
     before, after : mapping of parameter -> value
+    phones : sequence of str
+        Of the target, to name the place of a pin; without them it is named by numbers.
     """
     parts = []
     for name, label in _NAMES.items():
@@ -93,7 +116,7 @@ def change_text(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
             continue
         old, new = _value_text(name, before.get(name)), _value_text(name, after.get(name))
         parts.append(f"{label} {new}" if name in ("curve_weights", "text") else f"{label} {old} → {new}")
-    return ", ".join(parts)
+    return ", ".join(parts + _picks_text(before, after, phones))
 
 
 class History:
@@ -131,7 +154,18 @@ class History:
         """Whether an undone state can be taken again."""
         return self._child() is not None
 
-    def record(self, values: Mapping[str, Any], now_s: float, what: str = "") -> Entry | None:
+    @property
+    def line(self) -> frozenset[int]:
+        """Numbers of the entries that led to the state the session stands on, itself among them."""
+        found, number = set(), self._at
+        while number is not None and number in self._entries:
+            found.add(number)
+            number = self._entries[number].parent
+        return frozenset(found)
+
+    def record(
+        self, values: Mapping[str, Any], now_s: float, what: str = "", phones: Sequence[str] = ()
+    ) -> Entry | None:
         """Enter a state; None when it equals the one the session stands on.
 
         Parameters
@@ -142,6 +176,8 @@ class History:
             Seconds since the epoch.
         what : str
             The change in words; found from the values when empty.
+        phones : sequence of str
+            Of the target, to name the place of a pin.
         """
         here = self._entries.get(self._at) if self._at is not None else None
         before = here.values if here else {}
@@ -150,10 +186,10 @@ class History:
             return None
         if here is not None and self._goes_on(here, keys, now_s):
             parent = self._entries.get(here.parent) if here.parent is not None else None
-            text = change_text(parent.values, values) if parent else here.what
+            text = change_text(parent.values, values, phones) if parent else here.what
             entry = replace(here, when_s=now_s, what=text, values=dict(values), effect=math.nan)
         else:
-            text = what or (change_text(before, values) if here else "opened")
+            text = what or (change_text(before, values, phones) if here else "opened")
             entry = Entry(self._next, self._at, now_s, text, keys, dict(values))
             self._next += 1
         self._entries[entry.number] = entry

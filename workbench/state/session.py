@@ -57,7 +57,7 @@ class Session(Editing):
     facts = param.ClassSelector(
         class_=CorpusFacts, allow_None=True, default=None, doc="What a check of the corpus found."
     )
-    check_doing = param.String(default="", doc="What the check of the corpus is at.")
+    check_doing = param.String(default="", doc="What the check of the corpus is at; empty when none runs.")
     check_trouble = param.String(default="", doc="Why the corpus could not be checked.")
 
     def __init__(self, base: ConfigBase | None = None, **values: Any) -> None:
@@ -75,6 +75,17 @@ class Session(Editing):
         if self.corpus is None or name not in self.corpus.names:
             return ""
         return str(self.corpus.utterance(name).text)
+
+    @property
+    def phones(self) -> tuple[str, ...]:
+        """Labels of the phones of the target; empty while they are not known."""
+        kind, what = self.target
+        if self.corpus is not None and kind == "recording" and what in self.corpus.names:
+            return tuple(self.corpus.utterance(what).labels)
+        shown = self.result.request if self.result is not None else None
+        if kind == "text" and shown is not None and shown.text == what and self.result is not None:
+            return tuple(self.result.utterance.labels)
+        return ()
 
     def request(self) -> Request | None:
         """Return what is to be computed now, or None without corpus or target."""

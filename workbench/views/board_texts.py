@@ -39,8 +39,13 @@ def missing_text(result: Result) -> str:
 
 
 def lower_text(effects: Effects | None, result: Result, join: int) -> str:
-    """Return what would bring a join lower still, empty when nothing does by at least 5 % (our choice)."""
+    """Return what would bring a join lower; empty when it moves as speech does, or nothing helps.
+
+    Where the join is below the 95th percentile of natural stretches already, less is no better. Less than
+    5 % is no help (our choice).
+    """
     best = effects.best(join) if effects is not None and effects.fits(result) else None
-    if best is None or best[2] > 0.95 * result.ratios[join]:
+    ratio = result.ratios[join]
+    if best is None or not ratio > 1.0 or best[2] > 0.95 * ratio:
         return ""
-    return f"lower still: {best[0]} at {1000 * best[1]:.0f} ms, {best[2]:.2f}"
+    return f"lower: {best[0]} at {1000 * best[1]:.0f} ms, {best[2]:.2f}"

@@ -77,11 +77,18 @@ def _row(row: RecordingRow) -> str:
     )
 
 
-def _recordings(rows: tuple[RecordingRow, ...]) -> str:
+def _order(rows: tuple[RecordingRow, ...], checked: bool) -> str:
+    """Return in which order the rows stand: the worst can only come first when something is wrong."""
+    if any(row.problems for row in rows):
+        return "worst first" if checked else "those left out first"
+    return "nothing to look at; by name" if checked else "by name"
+
+
+def _recordings(rows: tuple[RecordingRow, ...], checked: bool) -> str:
     body = "".join(_row(row) for row in rows).replace('tabindex="-1"', 'tabindex="0"', 1)
     return (
-        '<section><h3>Recordings<span class="end">worst first; a click speaks one on the blend page</span>'
-        "</h3>"
+        f'<section><h3>Recordings<span class="end">{_order(rows, checked)}; '
+        "a click speaks one on the blend page</span></h3>"
         '<div class="rows recordings"><table><colgroup><col style="width:84px"><col style="width:38%">'
         '<col style="width:60px"><col style="width:76px"><col style="width:88px"><col></colgroup><thead><tr>'
         '<th>Recording</th><th>Sentence</th><th class="num">Length, s</th>'
@@ -151,7 +158,7 @@ def overview_html(session: Session) -> str:
         return ""
     title = f"<h1>{html.escape(corpus.description.name)}</h1>"
     right = _diphones(facts) if facts else ""
-    body = f'<div class="halves">{_recordings(recording_rows(corpus, facts))}{right}</div>'
+    body = f'<div class="halves">{_recordings(recording_rows(corpus, facts), facts is not None)}{right}</div>'
     advice = _advice(facts) if facts else ""
     return f'<div class="overview">{title}{_tallies(session, facts)}{advice}{body}</div>'
 

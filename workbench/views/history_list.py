@@ -18,26 +18,37 @@ def _ratio(value: float) -> str:
     return f"{value:.2f}" if math.isfinite(value) else "–"
 
 
-def _row(entry: Entry, here: bool) -> str:
+def _row(entry: Entry, here: bool, taken: bool) -> str:
+    """Return a state as a row; one that did not lead to the present state is struck out and set in."""
     clock = time.strftime("%H:%M:%S", time.localtime(entry.when_s))
     high = ' class="num warn"' if entry.effect > 1.0 else ' class="num"'
     now = ' class="now" aria-selected="true"' if here else ""
     text = html.escape(entry.what)
+    shown = f"<b>▸ {text}</b>" if here else text
+    style = "white-space:normal;overflow-wrap:anywhere;line-height:1.35"
+    if not taken:
+        shown, style = f"<s>{text}</s>", f"{style};padding-left:14px;color:var(--vsw-ink3)"
+    title = f"{clock} · {text}" if taken else f"{clock} · undone: {text}"
     return (
         f'<tr{now} role="option" tabindex="{0 if here else -1}" data-action="go" data-value="{entry.number}" '
-        f'title="{clock} · {text}"><td>{clock}</td><td>{text}</td><td{high}>{_ratio(entry.effect)}</td></tr>'
+        f'title="{title}"><td>{clock}</td><td style="{style}">{shown}</td>'
+        f"<td{high}>{_ratio(entry.effect)}</td></tr>"
     )
 
 
 def history_html(session: Session) -> str:
     """Return the latest states, the newest first; a click goes back to one.
 
+    Those that led to the present state stand in one line; undone ones are struck out and set in.
+
     The number is the worst join: peak acceleration over the 95th percentile of natural stretches.
     """
     history = session.history
     if not history.entries:
         return ""
-    rows = [_row(e, e.number == history.at) for e in history.entries[: -SHOWN - 1 : -1]]
+    line = history.line
+    shown = [e for i, e in enumerate(history.entries[::-1]) if i < SHOWN or e.number == history.at]
+    rows = [_row(e, e.number == history.at, e.number in line) for e in shown]
     return (
         f'<section><h3>History<span class="end">{len(history.entries)}</span></h3>'
         '<div class="rows history"><table>'

@@ -53,7 +53,7 @@ def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -
     if join is None:
         return "<dt>Join</dt><dd>none: the sentence begins here</dd>"
     ratio = join["ratio"]
-    peak = "unknown" if ratio is None else f"{ratio:.2f} × natural stretches' p95"
+    peak = "unknown" if ratio is None else f"{ratio:.2f} × natural p95"
     frames = round(join["overlap"] * frames_hz)
     over, inertial = f"{join['overlap']:.3f} s, {counted(frames, 'frame')}", join["inertial"]
     if inertial:
@@ -64,7 +64,8 @@ def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -
     return (
         f'<dt>Out</dt><dd title="{_escape(join["before"])}: {_escape(join["before_text"])}">'
         f"{_source(join['before'], join['before_text'], colour)}</dd>"
-        f"<dt>Peak accel.</dt><dd>{peak}</dd>"
+        '<dt>Peak accel.</dt><dd title="Over the 95th percentile of the peaks of natural stretches">'
+        f"{peak}</dd>"
         f"<dt>{'Dies away' if inertial else 'Overlap'}</dt><dd>{over}</dd>"
         f"<dt>Gap before</dt><dd>{join['gap']:.2f} mm, {join['gap_mm_s']:.0f} mm/s</dd>"
     )

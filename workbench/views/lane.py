@@ -57,10 +57,13 @@ class Lane(pn.custom.JSComponent):
         self._on_swap = on_swap
         super().__init__(**{"sizing_mode": "stretch_both", "palettes": palettes(), **params})
 
-    def show(self, result: Result, other: Result | None = None) -> None:
-        """Show a result, and setting A's; only what changed is sent (a drag of g(u): curves and joins)."""
+    def show(self, result: Result, other: Result | None = None, side: str = "B") -> None:
+        """Show a result, and that of the other setting dashed; the joins tell A's ratio before B's.
+
+        Only what changed is sent (a drag of g(u): curves and joins).
+        """
         changes: dict[str, Any] = {
-            "joins": joins_data(result, other),
+            "joins": joins_data(result, other if side == "B" else None),
             "curves": aperture_curves(result, other),
         }
         phones_and_fragments = score(result)

@@ -19,11 +19,11 @@ __all__ = ["PRESETS", "SettingsPanel", "settings_html"]
 
 _SHORT = {
     "exponential": "Exp.",
-    "user": "Yours",
-    "raised-cosine": "Cosine",
+    "raised-cosine": "Raised c.",
     "smoothstep": "Smooth",
     "smootherstep": "Smoother",
 }
+"""Names of g(u) that have no room: each is cut, so that the config's name is known in it."""
 _RULES = {"Shared phone": "shared-phone", "As printed": "paper"}
 
 

@@ -104,6 +104,7 @@ class Board(pn.custom.JSComponent):
     lane = pn.custom.Child()
     curves = pn.custom.Child()
 
+    preset_names = param.Dict(default={}, doc="Label of a g(u) -> its name in the config.")
     shown = param.Selector(default="lane", objects=["lane", "curves"], doc="What the lower card shows.")
     overlays = param.List(default=[], doc="{id, label, on, can} of what can be shown over the head.")
     inset_shown = param.Boolean(default=False, doc="Whether there is a recording to compare with.")

@@ -31,6 +31,8 @@ __all__ = ["BlendBoard"]
 _MODES = {"Cross-fade": "crossfade", "Inertial": "inertial"}
 KEYED = "keyed"
 """Class of the slider that the key of the overlap gives the focus to."""
+PEAK = "Peak ÷ natural p95"
+"""What the number of a join is, in these words wherever it stands."""
 _UNUSED = "Inertial joins use no g(u): the offset of the fragments dies away"
 
 
@@ -91,6 +93,7 @@ class BlendBoard(pn.viewable.Viewer):
             inset=self.inset.view,
             mode=self.mode,
             presets=self.presets,
+            preset_names=PRESETS,
             plot=self.plot,
             sliders=pn.Row(self.overlap, self.shape, self.inertial, sizing_mode="stretch_width", margin=0),
             lane=self.lane,
@@ -257,11 +260,10 @@ class BlendBoard(pn.viewable.Viewer):
         if self.lane.band != band:
             self.lane.band = band
         join = max(0, session.selected - 1)
-        a_and_b = (result, session.other) if session.side == "B" else (session.other or result, result)
-        data = effect_data(session.effects, a_and_b[0], a_and_b[1], join)
-        title, hint = "Peak ÷ natural stretches' p95", ""
+        data = effect_data(session.effects, result, session.other, join, session.side)
+        title, hint = PEAK, ""
         if join < len(result.ratios):
-            title = f"Join {join + 1}: peak ÷ natural stretches' p95"
+            title = f"Join {join + 1}: {PEAK[0].lower()}{PEAK[1:]}"
             hint = lower_text(session.effects, result, join)
         self.plot.param.update(effect=data, title=title, hint=hint)
 
@@ -294,7 +296,7 @@ class BlendBoard(pn.viewable.Viewer):
             self.plot.param.update(effect=NO_EFFECT, title="", hint="")
             self.board.param.update(head_text="", lane_text="", held_out_text="", warning="")
             return
-        self.lane.show(result, self._session.other if self._session.side == "B" else None)
+        self.lane.show(result, self._session.other, self._session.side)
         self.lane.selected = self._session.selected
         n = len(result.selection.chosen)
         self.board.param.update(

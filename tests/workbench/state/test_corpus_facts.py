@@ -45,6 +45,19 @@ def test_the_page_shows_tallies_rows_and_every_diphone(opened):
     assert "&lt;img" in checking_html(session)
 
 
+def test_worst_first_is_said_only_where_something_is_wrong(opened):
+    session = Session()
+    session.opened(opened)
+    assert "worst first" not in overview_html(session)
+    facts = corpus_facts(opened, lambda fraction, what: None)
+    for row in facts.health["recordings"]:
+        row["problems"] = []
+    session.facts = facts
+    assert "nothing to look at; by name" in overview_html(session)
+    facts.health["recordings"][3]["problems"] = ["one."]
+    assert "worst first" in overview_html(session)
+
+
 def test_progress_of_the_check_leaves_the_table_as_it_is(opened):
     session = Session()
     page = CorpusOverview(session, on_speak=lambda recording: None)

@@ -22,7 +22,9 @@ from workbench.state import (
     signals_of,
     stand_ins,
 )
-from workbench.views.board_texts import missing_text
+from workbench.views.board_texts import lower_text, missing_text
+from workbench.views.controls import Controls
+from workbench.views.work_board import BlendBoard
 
 
 class Visit:
@@ -183,12 +185,64 @@ def test_another_unit_is_compared_with_the_search_in_any_target(visit, words):
     swap_unit(session, 1)
     visit.run()
     (pin,), second = session.pins, visit.spoken
-    assert session.difference == "pins 0 → 1"
+    unit = pin.split("=")[1]
+    told = session.difference
+    assert told.startswith("pin ")
+    assert told.endswith(f"→ {unit}")
     for side, pins, spoken in (("A", (), first), ("B", (pin,), second)):
         assert session.swap_sides()
         visit.run()
         assert (session.side, session.pins, visit.spoken) == (side, pins, spoken)
-        assert session.difference == "pins 0 → 1"
+        assert session.difference == told
+
+
+def test_a_pin_is_told_by_its_phones_and_its_unit(visit):
+    session = visit.session
+    options = place_with_options(visit)
+    first, last = options.options[0].first, options.options[0].last
+    session.pins = (options.options[0].pin,)
+    phones = session.result.utterance.labels
+    unit = options.options[0].pin.partition("=")[2]
+    assert session.history.entries[-1].what == f"pin {phones[first]}–{phones[last]} → {unit}"
+    session.bans = ("time03",)
+    assert session.history.entries[-1].what == "ban time03"
+    session.param.update(pins=(), bans=())
+    assert session.history.entries[-1].what == f"unpin {phones[first]}–{phones[last]} ({unit}), allow time03"
+
+
+@pytest.mark.parametrize("side", ["A", "B"])
+def test_what_is_shown_is_solid_and_the_other_dashed_in_both_states(visit, side):
+    session, stages = visit.session, visit.stages
+    session.weighting = "linear"
+    visit.run()
+    if side == "A":
+        session.swap_sides()
+        visit.run()
+    other = stages.run(session.request_of_a())
+    drawn = effect_data(None, session.result, other, 0, session.side)
+    names = {"A": "smootherstep", "B": "linear"}
+    assert drawn["side"] == side
+    assert drawn["now"]["name"] == names[side]
+    assert drawn["other"]["name"] == names["B" if side == "A" else "A"]
+    board = BlendBoard(session, Controls(session), "clock", lambda: None)
+    session.other = other
+    assert board.plot.effect["side"] == side
+    assert board.plot.effect["now"]["name"] == names[side]
+    assert board.lane.curves["blend"] == aperture_curves(session.result)["blend"]
+    assert board.lane.curves["other"] == aperture_curves(other)["blend"]
+
+
+def test_nothing_lower_is_offered_where_a_join_is_natural(visit):
+    told, helped = [], []
+    for overlap_s in (OVERLAPS_S[0], OVERLAPS_S[3], 0.12):
+        visit.session.overlap_s = overlap_s
+        effects = compute_effects(visit.run())
+        for join, ratio in enumerate(visit.session.result.ratios):
+            if effects.best(join)[2] < 0.95 * ratio:
+                helped.append(ratio <= 1.0)
+                told.append(bool(lower_text(effects, visit.session.result, join)))
+    assert set(helped) == {True, False}
+    assert told == [not natural for natural in helped]
 
 
 def test_an_edit_of_a_becomes_b(visit):

@@ -3,7 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workbench.state import Entry, History, change_text
+from workbench.state import Entry, History, Session, change_text
+from workbench.views.history_list import history_html
 
 
 def test_a_slider_that_goes_on_is_one_entry_and_a_pause_ends_it():
@@ -92,7 +93,45 @@ def test_old_entries_go_first_and_undo_ends_where_they_were():
     assert history.at == 3
 
 
+@given(st.lists(st.sampled_from(["set", "undo", "redo", "go"]), max_size=30))
+def test_the_line_is_what_undo_goes_through(steps):
+    history = History(most=1000)
+    history.record({"method": 0}, 0.0)
+    for now, what in enumerate(steps, 1):
+        if what == "set":
+            history.record({"method": now}, 10.0 * now)
+        elif what == "go":
+            history.go(now // 2)
+        else:
+            getattr(history, what)()
+    line, met = history.line, {history.at}
+    while history.undo() is not None:
+        met.add(history.at)
+    assert line == met
+
+
+def test_undone_states_are_struck_out_and_the_present_one_is_marked():
+    session = Session(weighting="linear")
+    session.begin_history()
+    for name in ("septic", "bump"):
+        session.weighting = name
+    session.undo()
+    session.weighting = "sigmoid"
+    rows = history_html(session).split("<tr")[2:]
+    assert ["<s>" in row for row in rows] == [False, True, False, False]
+    assert ["▸" in row for row in rows] == [True, False, False, False]
+    assert "undone: g(u) septic → bump" in rows[1]
+
+
 def test_changes_are_told_in_words():
     text = change_text({"overlap_s": 0.12, "method": "viterbi"}, {"overlap_s": 0.08, "method": "greedy"})
     assert text == "method viterbi → greedy, overlap 120 ms → 80 ms"
     assert change_text({"rule": "paper"}, {"rule": "paper"}) == ""
+
+
+def test_an_exchanged_pin_is_one_change_and_pins_of_another_target_are_none():
+    one, two = {"pins": ("0-2=a:1-3",)}, {"pins": ("0-2=b:4-6",)}
+    assert change_text(one, two, ("SIL", "K", "AH")) == "pin SIL–AH → b:4-6"
+    assert change_text(one, two) == "pin phones 0–2 → b:4-6"
+    other = {"sentence": "y", "pins": ()}
+    assert change_text({"sentence": "x", **one}, other) == "sentence x → y"

@@ -265,6 +265,19 @@ def test_in_a_drag_the_head_goes_first_and_the_last_numbers_are_shown(desk_of, c
     assert not session.working
 
 
+def test_a_check_is_told_from_its_begin_to_its_end(desk_of, corpus_folder):
+    desk, loop = desk_of()
+    desk.open(corpus_folder)
+    loop.until(lambda: desk.session.corpus is not None)
+    said = []
+    desk.session.param.watch(lambda event: said.append(event.new), "check_doing")
+    desk.check()
+    loop.until(lambda: desk.session.facts is not None)
+    assert said[0] == "reading"
+    assert "lip closures" in said[-2]
+    assert said[-1] == ""
+
+
 def test_two_sessions_share_the_corpus_and_nothing_else(desk_of, corpus_folder):
     (one, loop_one), (two, loop_two) = desk_of(), desk_of()
     one.open(corpus_folder)
