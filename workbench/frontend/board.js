@@ -207,6 +207,7 @@ export function renderBoard({ model, el }) {
   sub.className = "sub";
   const chip = document.createElement("span");
   chip.className = "chip";
+  chip.title = "No fragment is from the recording of this sentence; how far lips and chin are from it in speech, rms";
   lane.head.append(sub, legend(model), chip, views(model));
   const notice = document.createElement("div");
   notice.className = "notice err band";
@@ -225,6 +226,7 @@ export function renderBoard({ model, el }) {
     tag.textContent = model.head_text;
     tag.hidden = !model.head_text;
     sub.textContent = model.lane_text;
+    sub.title = model.lane_text;
     chip.textContent = model.held_out_text;
     chip.hidden = !model.held_out_text;
     notice.hidden = !model.message;

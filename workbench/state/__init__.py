@@ -17,6 +17,7 @@ from workbench.state.lane_data import (
     weighting_samples,
 )
 from workbench.state.picks import Option, Options, fragment_at, options_of, pin_at, with_pin, without_pin
+from workbench.state.said import distance_mm, held_out_text, lane_text
 from workbench.state.session import STATUSES, Session
 from workbench.state.signals import SIGNALS, Signal, marker_signal, signals_of, speed_mm_s
 from workbench.state.stages import Request, Result, Stages
@@ -53,12 +54,15 @@ __all__ = [
     "corpus_facts",
     "css_variables",
     "default_config",
+    "distance_mm",
     "effect_data",
     "fragment_at",
     "fragment_details",
+    "held_out_text",
     "joins_data",
     "key_label",
     "key_table",
+    "lane_text",
     "marker_signal",
     "options_of",
     "phone_rows",

@@ -189,7 +189,7 @@ class FragmentDetails:
         Where it comes from, on the clock of its source, s.
     costs : tuple of (term, value)
         Target terms, then join terms.
-    total : float
+    total, of_all : float
     backoff : tuple of (target phone, phone spoken instead)
     join : dict or None
         The join with the fragment before it, as of :func:`joins_data`, with `gap_mm_s`, and of that fragment
@@ -206,6 +206,7 @@ class FragmentDetails:
     last_s: float
     costs: tuple[tuple[str, float], ...]
     total: float
+    of_all: float
     backoff: tuple[tuple[str, str], ...]
     join: dict[str, Any] | None
 
@@ -249,6 +250,7 @@ def fragment_details(result: Result, index: int) -> FragmentDetails:
         last_s=last_s,
         costs=(*unit.costs.target, *unit.costs.join),
         total=unit.costs.total,
+        of_all=result.selection.total_cost,
         backoff=tuple((target, used) for _, target, used in unit.backoff),
         join=_join_before(result, selection, index),
     )

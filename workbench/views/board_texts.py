@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from corpus_tools.core import counted
 from workbench.state import Effects, Result, stand_ins
+from workbench.state.said import contacts_of, missed_text
 
 __all__ = ["beside_of", "head_text", "lower_text", "missing_text"]
 
@@ -30,12 +31,11 @@ def head_text(result: Result, cast: tuple[Result, ...] = ()) -> str:
 
 
 def missing_text(result: Result) -> str:
-    """Return which diphones no unit has and what stood in, in one line; empty without any."""
+    """Return what the motion lacks, in one line: diphones for which others stood in, contacts not made."""
     most, told = stand_ins(result)
-    if most:
-        return most
     more = f" · and {len(told) - MOST_TOLD} more" if len(told) > MOST_TOLD else ""
-    return f"{' · '.join(told[:MOST_TOLD])}{more}"
+    stood_in = most or f"{' · '.join(told[:MOST_TOLD])}{more}"
+    return " · ".join(filter(None, (stood_in, missed_text(contacts_of(result)))))
 
 
 def lower_text(effects: Effects | None, result: Result, join: int) -> str:

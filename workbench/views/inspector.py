@@ -100,10 +100,11 @@ def _costs_html(details: FragmentDetails, colour: str) -> str:
         if value
     )
     free = ", ".join(_escape(_TERMS.get(name, name)) for name, value in details.costs if not value)
-    title = "Sum of the terms; the search keeps the sum over the sentence low"
+    title = "Sum of the terms, of that of the sentence, which the search keeps low"
     title += f". Nothing for {free}." if free else "."
     return (
-        f'<section><h3>Why this fragment<span class="end" title="{title}">cost {details.total:.2f}</span>'
+        f'<section><h3>Why this fragment<span class="end" title="{title}">'
+        f"cost {details.total:.2f} of {details.of_all:.2f}</span>"
         "</h3>"
         f'<div class="bars">{rows}</div></section>'
     )

@@ -8,13 +8,14 @@ from typing import Any
 
 import panel as pn
 
-from corpus_tools.core import counted
 from corpus_tools.synthesis import curve_through
 from workbench.actions import swap_to
 from workbench.state import (
     Session,
     band_data,
     effect_data,
+    held_out_text,
+    lane_text,
     weighting_samples,
 )
 from workbench.views.board_texts import beside_of, head_text, lower_text, missing_text
@@ -298,12 +299,10 @@ class BlendBoard(pn.viewable.Viewer):
             return
         self.lane.show(result, self._session.other, self._session.side)
         self.lane.selected = self._session.selected
-        n = len(result.selection.chosen)
         self.board.param.update(
             head_text=head_text(result, self._session.cast),
-            lane_text=f"{result.selection.method} · {counted(n, 'fragment')} · "
-            f"{counted(n - 1, 'join')} · cost {result.selection.total_cost:.2f}",
-            held_out_text=f"recording {result.request.sentence} held out" if result.request.exclude else "",
+            lane_text=lane_text(result),
+            held_out_text=held_out_text(result),
             warning=missing_text(result),
         )
         self._state()
