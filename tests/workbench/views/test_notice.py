@@ -39,7 +39,8 @@ def details(**changes):
         first_s=0.5,
         last_s=0.9,
         costs=(("timing", 0.4), ("position", 0.2)),
-        total=0.6, of_all=8.0,
+        total=0.6,
+        of_all=8.0,
         backoff=(),
         join={
             "time": 0.7,
