@@ -90,6 +90,10 @@ def replay_command(session: Session, path: str | Path) -> str:
     return shlex.join(parts)
 
 
+_LONGEST_NAME, _LONGEST_PATH = 200, 2000
+"""Bytes of a part of a path, and characters of it all (our choice: less than file systems allow)."""
+
+
 def _refuse_foreign(path: Path) -> None:
     if path.is_dir():
         raise OutputError(
@@ -110,6 +114,11 @@ def export_target(path: str | Path, root: Path | None = None, beside: Path | Non
     if not str(path).strip():
         raise InputError("No file was given; type where the config is to be written.")
     text = str(path).strip()
+    longest = max((len(part.encode("utf-8", "replace")) for part in Path(text).parts), default=0)
+    if longest > _LONGEST_NAME or len(text) > _LONGEST_PATH:
+        raise OutputError(
+            f"'{text[:30]}…' is too long for a file; give a name of at most {_LONGEST_NAME} bytes."
+        )
     target = inside_root(text if text.startswith("~") else Path(beside or "") / text, root)
     if not target.suffix and not target.is_dir():
         target = target.with_suffix(".toml")

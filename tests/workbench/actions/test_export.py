@@ -44,6 +44,13 @@ def test_a_folder_is_refused(tmp_path):
         export_config(Session(), tmp_path)
 
 
+@pytest.mark.parametrize("name", ["x" * 5000, "é" * 150 + ".toml", "/".join(["x" * 100] * 40)])
+def test_a_name_that_no_file_can_have_is_refused_and_not_repeated(tmp_path, name):
+    with pytest.raises(OutputError, match="too long for a file") as caught:
+        export_config(Session(), tmp_path / name)
+    assert len(str(caught.value)) < 200
+
+
 def test_nothing_leaves_the_root(tmp_path):
     root = tmp_path / "root"
     root.mkdir()
