@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import tomli_w
 
 from corpus_tools.config.model import ConfigBase, config_from_dict
 from corpus_tools.core import ConfigError, atomic_file
+from corpus_tools.core.toml_file import TomlFileError, read_toml
 
 __all__ = ["config_text", "load_config", "write_config"]
 
@@ -29,20 +29,13 @@ def load_config(path: str | Path) -> ConfigBase:
     """
     file = Path(path)
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
+        data = read_toml(file)
     except FileNotFoundError:
         raise ConfigError(f"There is no config file '{file}'; check the path given to --config.") from None
-    except UnicodeDecodeError:
+    except TomlFileError as error:
         raise ConfigError(
-            f"The config file '{file}' cannot be read: it is not UTF-8 text; save it again as UTF-8."
+            f"The config file '{file}' {error}; give a file that the workbench exported."
         ) from None
-    except (OSError, RecursionError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise ConfigError(
-            f"The config file '{file}' cannot be read: {reason}; give a file that the workbench exported."
-        ) from None
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"The config file '{file}' is not TOML: {error}; export it again.") from None
     return config_from_dict(data, str(file))
 
 

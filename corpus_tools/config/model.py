@@ -34,7 +34,9 @@ class ConfigBase(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    schema_: int = Field(SCHEMA, alias="schema", ge=1, le=SCHEMA, description="Layout of this file.")
+    schema_: int = Field(
+        SCHEMA, alias="schema", ge=1, le=SCHEMA, strict=True, description="Layout of this file."
+    )
     provenance: dict[str, Any] = Field(default_factory=dict, description="Corpus and code that made it.")
 
     if TYPE_CHECKING:

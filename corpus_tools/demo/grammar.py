@@ -16,6 +16,7 @@ import numpy as np
 
 from corpus_tools.core import InputError
 from corpus_tools.core.errors import suggestion
+from corpus_tools.core.toml_file import TomlFileError, read_toml
 from corpus_tools.demo.sentences import Sentence
 from corpus_tools.speech import phone_set
 
@@ -142,11 +143,7 @@ def _lexicon(data: Mapping[str, Any], key: str, n_words: int, where: str) -> dic
     return {word: tuple(phones.normalise(p) for p in text.split()) for word, text in table.items()}
 
 
-def _grammar(text: str, name: str, where: str) -> Grammar:
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise _refused(where, f"no TOML ({error})") from None
+def _grammar(data: Mapping[str, Any], name: str, where: str) -> Grammar:
     before = {(k.split()[0], k.split()[1]): v for k, v in _lexicon(data, "before", 2, where).items()}
     return Grammar(name, _slots(data, where), _lexicon(data, "lexicon", 1, where), before)
 
@@ -155,7 +152,7 @@ def _grammar(text: str, name: str, where: str) -> Grammar:
 def time_grammar() -> Grammar:
     """Return the time domain of paper A: 2880 sentences; exactness and minutes may be left out."""
     file = resources.files("corpus_tools.demo") / "data" / "time_grammar.toml"
-    return _grammar(file.read_text(encoding="utf-8"), "time", "time_grammar.toml")
+    return _grammar(tomllib.loads(file.read_text(encoding="utf-8")), "time", "time_grammar.toml")
 
 
 def load_grammar(source: str | Path) -> Grammar:
@@ -170,8 +167,8 @@ def load_grammar(source: str | Path) -> Grammar:
         return time_grammar()
     path = Path(source)
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "no text"
-        raise InputError(f"'{source}' cannot be read ({reason}); give 'time' or {_FORM}.") from None
-    return _grammar(text, path.stem, str(source))
+        data = read_toml(path)
+    except (FileNotFoundError, TomlFileError) as error:
+        why = "cannot be read: it is not there" if isinstance(error, FileNotFoundError) else str(error)
+        raise InputError(f"'{source}' {why}; 'time' or {_FORM} was expected.") from None
+    return _grammar(data, path.stem, str(source))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
@@ -14,6 +13,7 @@ import tomli_w
 
 from corpus_tools.core import CorpusError, atomic_file
 from corpus_tools.core.errors import suggestion
+from corpus_tools.core.toml_file import TomlFileError, read_toml
 from corpus_tools.io.motion_parts import mm_per
 
 __all__ = [
@@ -232,18 +232,14 @@ def read_description(folder: str | Path) -> CorpusDescription:
         )
     file = place / CORPUS_FILE
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
+        data = read_toml(file)
     except FileNotFoundError:
         raise CorpusError(
             f"'{place}' has no {CORPUS_FILE}, so it is not a corpus yet; make one with "
             f"'corpus-tools init {place} --motion PATTERN'."
         ) from None
-    except UnicodeDecodeError:
-        raise CorpusError(f"'{file}' cannot be read: it is not UTF-8 text; save it again as UTF-8.") from None
-    except (OSError, RecursionError) as error:
-        raise CorpusError(f"'{file}' cannot be read: {error}.") from None
-    except tomllib.TOMLDecodeError as error:
-        raise CorpusError(f"'{file}' is not TOML: {error}.") from None
+    except TomlFileError as error:
+        raise CorpusError(f"'{file}' {error}.") from None
     return description_from_dict(data, place)
 
 

@@ -7,16 +7,21 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from corpus_tools.core import Audio, Capture, FloatArray, InputError, Labels, Registry
+import numpy as np
+
+from corpus_tools.core import Audio, Capture, FloatArray, InputError, Labels, MotionError, Registry
 
 __all__ = [
     "AUDIO_READERS",
     "LABEL_READERS",
     "LARGEST_BYTES",
+    "LARGEST_SOUND_BYTES",
+    "LARGEST_UNPACKED_BYTES",
     "MOTION_READERS",
     "MOTION_WRITERS",
     "MotionReader",
     "MotionWriter",
+    "check_unpacked",
     "read_audio",
     "read_labels",
     "read_markers",
@@ -25,6 +30,17 @@ __all__ = [
 LARGEST_BYTES = 1 << 30
 """Motion and label files above this size are refused before they are opened (our choice: three hours of 70
 markers at 120 Hz as C3D)."""
+
+LARGEST_UNPACKED_BYTES = 1 << 30
+"""Packed files (npz, MATLAB) that hold more are refused before they are unpacked (our choice: an hour and a
+half of 70 markers at 120 Hz in 8 bytes a number)."""
+
+LARGEST_SOUND_BYTES = 1 << 31
+"""Sound of more samples, at 4 bytes each, is refused by its header (our choice: three hours of one channel at
+48 kHz)."""
+
+SOUND_RATES_HZ = (1000, 768_000)
+"""Lowest and highest sampling rate that can be meant (our choice)."""
 
 
 class MotionReader(Protocol):
@@ -50,6 +66,22 @@ MOTION_READERS: Registry[MotionReader] = Registry("motion format")
 MOTION_WRITERS: Registry[MotionWriter] = Registry("motion format for writing")
 LABEL_READERS: Registry[Callable[[Path], Labels]] = Registry("label format")
 AUDIO_READERS: Registry[Callable[[Path], Audio]] = Registry("sound format")
+
+
+def check_unpacked(path: Path, n_bytes: int) -> None:
+    """Refuse what would hold more than :data:`LARGEST_UNPACKED_BYTES` in memory.
+
+    Raises
+    ------
+    MotionError
+        The message names the file and both sizes.
+    """
+    if n_bytes > LARGEST_UNPACKED_BYTES:
+        raise MotionError(
+            f"'{path}' holds {n_bytes / 2**30:.1f} GB when it is unpacked, more than the "
+            f"{LARGEST_UNPACKED_BYTES / 2**30:.3g} GB that are read at once; cut it into recordings of one "
+            "sentence each."
+        )
 
 
 def _reader_for(path: Path, readers: Registry, what: str) -> Callable[..., object]:  # type: ignore[type-arg]
@@ -97,7 +129,9 @@ def read_markers(path: str | Path, *, rate_hz: float | None = None, units: str =
         names it.
     """
     file = Path(path)
-    capture = _reader_for(file, MOTION_READERS, "motion")(file, rate_hz=rate_hz, units=units)
+    reader = _reader_for(file, MOTION_READERS, "motion")
+    with np.errstate(all="ignore"):  # numbers of damaged files: what is infinite or none is looked at after
+        capture = reader(file, rate_hz=rate_hz, units=units)
     assert isinstance(capture, Capture)
     return capture
 
@@ -115,4 +149,10 @@ def read_audio(path: str | Path) -> Audio:
     file = Path(path)
     audio = _reader_for(file, AUDIO_READERS, "sound")(file)
     assert isinstance(audio, Audio)
+    slowest, fastest = SOUND_RATES_HZ
+    if not slowest <= audio.rate_hz <= fastest:
+        raise InputError(
+            f"'{file}' says that its sound has {audio.rate_hz} samples per second; {slowest} to {fastest} "
+            "were expected: its header is damaged, export it again."
+        )
     return audio

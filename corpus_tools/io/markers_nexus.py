@@ -66,7 +66,6 @@ def read_nexus(table: Table, *, rate_hz: float | None = None, units: str = "") -
     head = table.rows[title + 1 : title + 5]
     if len(head) == 4 and _is_frame(head[3]):
         head[3] = []  # a row of blank units is none
-    start = title + (5 if head[-1] else 4)
     try:
         if len(head) < 4 or head[2][0].lower() != "frame":
             raise MotionError("its head is not whole")
@@ -75,6 +74,7 @@ def read_nexus(table: Table, *, rate_hz: float | None = None, units: str = "") -
             raise MotionError("it names no markers with X, Y and Z")
     except MotionError as error:
         raise MotionError(f"'{path}' is no whole Vicon export: {error}; {_EXPECTED}.") from None
+    start = title + (5 if head[3] else 4)
     rows = list(takewhile(_is_frame, table.rows[start:]))
     if not rows:
         raise MotionError(f"'{path}' holds no frames under 'Trajectories'; export it again.")

@@ -11,12 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from corpus_tools.core import Capture, FloatArray, MotionError, atomic_file
-from corpus_tools.io.formats import MOTION_READERS, MOTION_WRITERS
+from corpus_tools.io.formats import MOTION_READERS, MOTION_WRITERS, check_unpacked
 from corpus_tools.io.motion_parts import Notes, capture_of, chosen_rate, unit_factor
 from corpus_tools.io.writing import checked_motion
 
 __all__ = ["read_markers_npz", "write_markers_npz"]
 
+_ARRAYS = ("xyz", "fps", "names", "units")
 _EXPECTED = "a numpy archive with xyz (frames, markers, 3), fps and names was expected"
 
 
@@ -40,8 +41,9 @@ def read_markers_npz(path: Path, *, rate_hz: float | None = None, units: str = "
     if not zipfile.is_zipfile(path):
         raise MotionError(f"'{path}' is no numpy archive, or one cut short: {_EXPECTED}.")
     try:
+        check_unpacked(path, _unpacked_bytes(path))
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
-            missing = [k for k in ("xyz", "fps", "names") if k not in archive.files]
+            missing = [k for k in _ARRAYS[:3] if k not in archive.files]
             if missing:
                 raise MotionError(
                     f"'{path}' has no array {missing[0]} (it has {', '.join(archive.files)}): {_EXPECTED}."
@@ -63,6 +65,12 @@ def read_markers_npz(path: Path, *, rate_hz: float | None = None, units: str = "
     return capture_of(path, xyz.astype(np.float64) * factor, labels, rate, format="npz", notes=notes)
 
 
+def _unpacked_bytes(path: Path) -> int:
+    """Return what the arrays that are read take when unpacked, by the list of contents of the archive."""
+    with zipfile.ZipFile(path) as archive:
+        return sum(i.file_size for i in archive.infolist() if i.filename.removesuffix(".npy") in _ARRAYS)
+
+
 def _stated_unit(unit: npt.NDArray[Any]) -> str:
     """Return the first word of the array ``units``: "mm (file unit cm x10)" means mm."""
     words = str(unit.reshape(-1)[0]).split() if unit.dtype.kind == "U" and unit.size == 1 else []
@@ -79,10 +87,9 @@ def _check(path: Path, xyz: npt.NDArray[Any], fps: npt.NDArray[Any], names: npt.
         raise MotionError(
             f"'{path}' holds names of {names.dtype} {names.shape}; a row of texts was expected."
         )
-    if not np.isfinite(fps).all() or not (fps > 0).all():
-        raise MotionError(f"'{path}' says fps = {fps.reshape(()):g}; a positive rate in Hz was expected.")
     if not xyz.size:
         raise MotionError(f"'{path}' holds no frames or no markers (xyz has shape {xyz.shape}).")
+    check_unpacked(path, 8 * xyz.size)
     if xyz.ndim != 3 or xyz.shape[2] != 3:
         raise MotionError(f"'{path}' holds xyz of shape {xyz.shape}; (frames, markers, 3) was expected.")
     if xyz.shape[1] != len(names):

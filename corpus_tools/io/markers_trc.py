@@ -91,7 +91,9 @@ def _refuse_other_delimiters(lines: Sequence[str]) -> None:
     """Say what separates the columns instead of tabs, and whether the header would be true at that."""
     if "\t" in lines[0] or any("\t" in line for line in lines[1:4]):
         return
-    delimiter = max(",; ", key=lines[0].count)
+    delimiter = max(",; ", key="\n".join(lines[:4]).count)
+    if not any(delimiter in line for line in lines[:4]):
+        raise _LayoutError("there are no tabs in its first lines, nor anything else between columns")
     word = {",": "commas", ";": "semicolons", " ": "spaces"}[delimiter]
     lie = ""
     try:

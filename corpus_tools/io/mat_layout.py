@@ -7,6 +7,8 @@ import struct
 import zlib
 from dataclasses import dataclass
 
+from corpus_tools.io.formats import LARGEST_UNPACKED_BYTES
+
 __all__ = ["MatLayoutError", "struct_names"]
 
 _BYTES_OF = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8}
@@ -14,7 +16,7 @@ _TEXT_BYTES_OF = {1: 1, 2: 1, 4: 2, 16: 1, 17: 2, 18: 4}
 _INT8, _INT32, _UINT32, _MATRIX, _COMPRESSED = 1, 5, 6, 14, 15
 _CELL, _STRUCT, _CHAR, _NUMBERS = 1, 2, 4, range(6, 16)
 _COMPLEX = 0x0800
-_HEADER_BYTES, _DEEPEST, _LONGEST_NAME = 128, 16, 64
+_HEADER_BYTES, _DEEPEST, _LONGEST_NAME, _MOST_ARRAYS = 128, 16, 64, 1_000_000
 
 
 class MatLayoutError(ValueError):
@@ -33,7 +35,7 @@ class _Part:
         return self.end - self.start
 
 
-def struct_names(data: bytes) -> dict[str, bool]:
+def struct_names(data: bytes, most_bytes: int = LARGEST_UNPACKED_BYTES) -> dict[str, bool]:
     """Return name -> whether it is a struct array, for every variable; the structs are sound in layout.
 
     Variables that are no struct are not looked into, so that they may be of any kind.
@@ -42,14 +44,18 @@ def struct_names(data: bytes) -> dict[str, bool]:
     ----------
     data : bytes
         The whole file; its header of 128 bytes says version 5.
+    most_bytes : int
+        What may be unpacked, and what the numbers of the structs may take at 8 bytes each.
 
     Raises
     ------
     MatLayoutError
-        A part reaches beyond what holds it, or is not of the kind, size or shape that stands there.
+        A part reaches beyond what holds it, is not of the kind, size or shape that stands there, or there is
+        more than `most_bytes`.
     """
     order = "<" if data[126:128] == b"IM" else ">"
     found: dict[str, bool] = {}
+    n_unpacked, n_values = 0, 0
     at = _HEADER_BYTES
     while at < len(data):
         # what a compressed variable is followed by is not padded
@@ -57,7 +63,8 @@ def struct_names(data: bytes) -> dict[str, bool]:
         at = part.after
         inside = data[part.start : part.end]
         if part.kind == _COMPRESSED:
-            inside = _unpacked(inside, part.start)
+            inside = _unpacked(inside, part.start, most_bytes - n_unpacked)
+            n_unpacked += len(inside)
             walk = _Walk(inside, order)
             held = walk.part(0, len(inside))
         else:
@@ -67,15 +74,23 @@ def struct_names(data: bytes) -> dict[str, bool]:
         name, kind = walk.named(held)
         found[name] = kind == _STRUCT
         if kind == _STRUCT:
-            walk.matrix(held, 0)
+            n_values += walk.matrix(held, 0)
+        if 8 * n_values > most_bytes:
+            raise MatLayoutError(f"its numbers take more than {most_bytes / 2**30:.3g} GB")
     return found
 
 
-def _unpacked(packed: bytes, at: int) -> bytes:
+def _unpacked(packed: bytes, at: int, most: int) -> bytes:
+    stream = zlib.decompressobj()
     try:
-        return zlib.decompress(packed)
+        data = stream.decompress(packed, most + 1)
     except zlib.error as error:
         raise MatLayoutError(f"a compressed variable at byte {at} cannot be unpacked, {error}") from None
+    if len(data) > most:
+        raise MatLayoutError(f"the compressed variable at byte {at} holds more than is unpacked at once")
+    if not stream.eof:
+        raise MatLayoutError(f"a compressed variable at byte {at} is cut short")
+    return data
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,10 +140,10 @@ class _Walk:
         kind, _, _, _, name = self.head(held)
         return name, kind
 
-    def matrix(self, held: _Part, depth: int) -> None:
-        """Go through an array with everything in it."""
+    def matrix(self, held: _Part, depth: int) -> int:
+        """Go through an array with everything in it, and return how many numbers and signs it holds."""
         if not held.size:
-            return  # an empty array has no head
+            return 0  # an empty array has no head
         if depth > _DEEPEST:
             raise MatLayoutError(f"arrays in arrays more than {_DEEPEST} deep at byte {held.start}")
         kind, complex_, n, at, _ = self.head(held)
@@ -138,26 +153,33 @@ class _Walk:
             names = self.part(length.after, held.end)
             if names.kind != _INT8 or not 0 < one <= _LONGEST_NAME or names.size % one:
                 raise MatLayoutError(f"no names of fields at byte {length.after}")
-            self.inner(names.after, held.end, n * (names.size // one), depth)
-        elif kind == _CELL:
-            self.inner(at, held.end, n, depth)
-        elif kind == _CHAR:
+            return self.inner(names.after, held.end, n * (names.size // one), depth)
+        if kind == _CELL:
+            return self.inner(at, held.end, n, depth)
+        if kind == _CHAR:
             self.numbers(at, held.end, n, _TEXT_BYTES_OF)
-        elif kind in _NUMBERS:
+            return n
+        if kind in _NUMBERS:
             for _ in range(1 + complex_):
                 at = self.numbers(at, held.end, n, _BYTES_OF)
-        else:
-            raise MatLayoutError(f"an array of class {kind} at byte {held.start}")
+            return n * (1 + complex_)
+        raise MatLayoutError(f"an array of class {kind} at byte {held.start}")
 
-    def inner(self, at: int, end: int, n: int, depth: int) -> None:
+    def inner(self, at: int, end: int, n: int, depth: int) -> int:
         if n * 8 > end - at:
             raise MatLayoutError(f"{n} arrays are due at byte {at}, where {end - at} bytes are left")
+        if n > _MOST_ARRAYS:
+            raise MatLayoutError(
+                f"{n} arrays at byte {at}, more than the {_MOST_ARRAYS} that are read at once"
+            )
+        n_values = 0
         for _ in range(n):
             part = self.part(at, end)
             if part.kind != _MATRIX:
                 raise MatLayoutError(f"kind {part.kind} at byte {at}, where an array is due")
-            self.matrix(part, depth + 1)
+            n_values += self.matrix(part, depth + 1)
             at = part.after
+        return n_values
 
     def numbers(self, at: int, end: int, n: int, bytes_of: dict[int, int]) -> int:
         part = self.part(at, end)

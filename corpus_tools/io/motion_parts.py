@@ -24,6 +24,9 @@ _SPELT = {
     **{s: "inch" for s in ("in", "inch", "inches")},
 }
 
+RATES_HZ = (1.0, 1e5)
+"""Slowest and fastest motion that can be meant (our choice): others are periods, or damage."""
+
 _UNIT = re.compile(r"(?P<times>\d{1,9}(?:\.\d{1,9})?)? *(?P<unit>mm|cm|m|inch)")
 
 Notes = list[str]
@@ -90,13 +93,13 @@ def chosen_rate(path: Path, stated_hz: float | None, rate_hz: float | None, note
     Raises
     ------
     MotionError
-        Neither says a positive number.
+        Neither says a number within :data:`RATES_HZ`.
     """
+    slowest, fastest = RATES_HZ
+    expected = f"{slowest:g} to {fastest:g} Hz was expected"
     if rate_hz is not None:
-        if not (np.isfinite(rate_hz) and rate_hz > 0):
-            raise MotionError(
-                f"rate_hz = {rate_hz:g} for '{path}' is no frame rate; a positive number of Hz was expected."
-            )
+        if not slowest <= rate_hz <= fastest:
+            raise MotionError(f"rate_hz = {rate_hz:g} for '{path}' is no frame rate; {expected}.")
         if stated_hz is not None and abs(stated_hz - rate_hz) > 1e-3 * rate_hz:
             notes.append(f"the file says {stated_hz:g} Hz; rate_hz = {rate_hz:g} is used.")
         return float(rate_hz)
@@ -104,10 +107,10 @@ def chosen_rate(path: Path, stated_hz: float | None, rate_hz: float | None, note
         raise MotionError(
             f"'{path}' says neither a frame rate nor the times of its frames; set 'rate_hz' in corpus.toml."
         )
-    if not (np.isfinite(stated_hz) and stated_hz > 0):
+    if not slowest <= stated_hz <= fastest:
         raise MotionError(
-            f"'{path}' says its frame rate is {stated_hz:g}; a positive number of Hz was expected, which "
-            "'rate_hz' in corpus.toml can give."
+            f"'{path}' says its frame rate is {stated_hz:g}; {expected}, which 'rate_hz' in corpus.toml can "
+            "give."
         )
     return float(stated_hz)
 
@@ -130,6 +133,12 @@ def _check(path: Path, positions: FloatArray, names: Sequence[str]) -> None:
     if twice:
         raise MotionError(
             f"'{path}' : the marker name '{twice[0]}' stands more than once; rename one and export it again."
+        )
+    odd = [n for n in names if not n.isprintable()]
+    if odd:
+        raise MotionError(
+            f"'{path}': the marker name {odd[0][:40]!r} holds characters that cannot be printed; rename "
+            "it and export it again."
         )
     if not names:
         raise MotionError(f"'{path}' holds no marker that has a name; label them and export again.")
@@ -180,7 +189,7 @@ def capture_of(
     Raises
     ------
     MotionError
-        No frames, no named markers, a name twice, or an infinite position.
+        No frames, no named markers, a name twice or of control characters, or an infinite position.
     """
     keep = _named(names)
     kept = [names[i].strip() for i in keep]

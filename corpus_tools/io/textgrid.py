@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
@@ -42,6 +43,8 @@ _BROKEN = (
     OSError,
 )
 
+_NO_NUMBER = re.compile(r"(?:invalid literal|could not convert).*?: ['\"](.*)['\"]$")
+
 
 @LABEL_READERS.register(".textgrid")
 @LABEL_READERS.register(".json")
@@ -70,8 +73,25 @@ def read_textgrid(path: Path) -> Labels:
     except LabelError as error:
         raise LabelError(f"'{path}': {error}") from None
     except _BROKEN as error:
-        reason = " ".join(str(error).split())[:120].rstrip(".") or type(error).__name__
-        raise LabelError(f"'{path}' cannot be read as a TextGrid ({reason}): {_ADVICE}.") from None
+        raise LabelError(f"'{path}' cannot be read as a TextGrid ({_reason(error)}): {_ADVICE}.") from None
+
+
+def _reason(error: Exception) -> str:
+    """Return what is wrong with a file in words of labels, for what praatio and Python raise."""
+    said = " ".join(str(error).split())
+    if isinstance(error, UnicodeError):
+        return "it is neither UTF-8 nor UTF-16 text"
+    if isinstance(error, RecursionError):
+        return "its brackets are too deep"
+    if isinstance(error, OSError):
+        return error.strerror or "it cannot be opened"
+    if isinstance(error, praat_errors.PraatioException) and said:
+        return said[:120].rstrip(".")
+    if isinstance(error, OverflowError) or "digits" in said:
+        return "a number in it is too long"
+    if found := _NO_NUMBER.search(said):
+        return f"'{found[1][:40]}' stands where a number was expected"
+    return "a part of it is missing, or stands where it should not"
 
 
 def _decoded(data: bytes) -> str:
@@ -126,7 +146,11 @@ def _labels(grid: Mapping[str, Any], strings: list[str] | None) -> Labels:
 def _word(text: object, strings: list[str] | None) -> str:
     if not isinstance(text, str):
         raise LabelError(f"the label {text!r} is no text.")
-    return text if strings is None else strings[int(text)]
+    if strings is None:
+        return text
+    if not (text.isdecimal() and int(text) < len(strings)):
+        raise LabelError(f"a quotation mark within a label is not doubled, as Praat writes it: {_ADVICE}.")
+    return strings[int(text)]
 
 
 def _check_times(labels: Labels) -> None:

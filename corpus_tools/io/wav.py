@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import wave
 from pathlib import Path
 
@@ -9,9 +10,13 @@ import numpy as np
 import soundfile
 
 from corpus_tools.core import Audio, InputError, atomic_file
-from corpus_tools.io.formats import AUDIO_READERS
+from corpus_tools.io.formats import AUDIO_READERS, LARGEST_SOUND_BYTES
 
 __all__ = ["read_sound", "write_wav"]
+
+_BEGINNINGS = (b"RIFF", b"RIFX", b"RF64", b"riff", b"fLaC", b"FORM", b"OggS", b"NIST_1A", b".snd", b"caff")
+_MP3_IN_WAV = re.compile(rb"fmt .{4}\x55\x00", re.DOTALL)
+_HEAD_BYTES = 4096
 
 
 @AUDIO_READERS.register(".wav")
@@ -23,10 +28,14 @@ def read_sound(path: Path) -> Audio:
     Raises
     ------
     InputError
-        It is no sound file, or holds no samples.
+        It is no sound file, holds no samples, or more than fit into memory; that is seen from its header.
     """
     try:
-        samples, rate = soundfile.read(path, dtype="float32", always_2d=True)
+        with path.open("rb") as start:
+            _refuse_mp3(path, start.read(_HEAD_BYTES))
+        with soundfile.SoundFile(path) as sound:
+            _check_size(path, sound)
+            samples, rate = sound.read(dtype="float32", always_2d=True), sound.samplerate
     except (soundfile.SoundFileError, RuntimeError, OSError) as error:
         reason = str(error).splitlines()[0]
         raise InputError(f"'{path}' cannot be read as sound ({reason}); a WAV file was expected.") from None
@@ -35,6 +44,25 @@ def read_sound(path: Path) -> Audio:
     if not np.isfinite(samples).all():
         raise InputError(f"The sound file '{path}' holds samples that are not numbers; export it again.")
     return Audio(samples.mean(axis=1), int(rate))
+
+
+def _refuse_mp3(path: Path, head: bytes) -> None:
+    """Refuse what begins as no sound file, and MP3 in a WAV file: its decoder writes to the terminal."""
+    if not head.startswith(_BEGINNINGS) or _MP3_IN_WAV.search(head):
+        raise InputError(
+            f"'{path}' does not begin as a WAV, FLAC, AIFF or OGG file does, whatever it is called; save it "
+            "as WAV."
+        )
+
+
+def _check_size(path: Path, sound: soundfile.SoundFile) -> None:
+    size = 4 * sound.frames * sound.channels
+    if size > LARGEST_SOUND_BYTES:
+        raise InputError(
+            f"The sound file '{path}' has by its header {sound.frames} samples in {sound.channels} channels, "
+            f"{size / 2**30:.3g} GB, more than the {LARGEST_SOUND_BYTES / 2**30:.3g} GB that are read at "
+            "once; cut it into recordings of one sentence each."
+        )
 
 
 def write_wav(path: str | Path, audio: Audio) -> None:

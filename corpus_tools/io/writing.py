@@ -9,6 +9,7 @@ import numpy as np
 
 from corpus_tools.core import Capture, FloatArray, MotionError, Trajectory
 from corpus_tools.io.formats import MOTION_WRITERS
+from corpus_tools.io.motion_parts import RATES_HZ
 
 __all__ = ["cell_text", "checked_motion", "timed_rows", "write_motion_file"]
 
@@ -33,8 +34,11 @@ def checked_motion(
         )
     if np.isinf(positions).any():
         raise MotionError(f"{where}: a position is infinite; a missing one must be NaN.")
-    if not (np.isfinite(rate_hz) and rate_hz > 0):
-        raise MotionError(f"{where}: the frame rate is {rate_hz:g}; a positive number of Hz was expected.")
+    slowest, fastest = RATES_HZ
+    if not slowest <= rate_hz <= fastest:
+        raise MotionError(
+            f"{where}: the frame rate is {rate_hz:g}; {slowest:g} to {fastest:g} Hz was expected."
+        )
     for name in labels:
         if name != name.strip() or not name or not name.isprintable() or labels.count(name) > 1:
             raise MotionError(

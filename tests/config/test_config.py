@@ -1,5 +1,6 @@
 """Configs: every value explicit, unknown keys refused, files and values round trip."""
 
+import os
 import tomllib
 
 import pytest
@@ -78,6 +79,16 @@ def test_every_field_is_written_bounded_and_described(name):
         ({"selection": {"join": 1e308}}, ["selection.join", "1000000"]),
         ({"cleaning": {"gap_method": "dtc"}}, ["cleaning.gap_method", "did you mean 'dct'", "auto, "]),
         ({"schema": 99}, ["schema", "99"]),
+        ({"schema": True}, ["schema", "True"]),
+        ({"rest": {"ease_s": True}}, ["rest.ease_s", "True", "a number without quotes"]),
+        ({"rest": {"ease_s": "1"}}, ["rest.ease_s", "'1'", "a number without quotes"]),
+        ({"output": {"seed": False}}, ["output.seed", "False", "a number without quotes"]),
+        ({"output": {"seed": 1.5}}, ["output.seed", "1.5"]),
+        ({"closure": {"project": 1}}, ["closure.project", "true or false"]),
+        ({"closure": {"project": "no"}}, ["closure.project", "true or false"]),
+        ({"blend": {"curve_weights": [1, 2, "3", 1]}}, ["blend.curve_weights", "a number without quotes"]),
+        ({"blend": {"curve_weights": [1, 2, True, 1]}}, ["blend.curve_weights", "a number without quotes"]),
+        ({"overrides": {"bans": [1]}}, ["overrides.bans.0", "1"]),
         ({"blend": 3}, ["blend"]),
     ],
 )
@@ -88,6 +99,13 @@ def test_bad_data_is_refused_by_name(data, words):
         assert word in str(caught.value)
     assert str(caught.value).count("mine.toml") == 1  # one sentence
     assert len(str(caught.value)) < 300
+
+
+@given(ease_s=st.integers(0, 1), seed=st.integers(0, 10**9))
+def test_whole_numbers_are_numbers(ease_s, seed):
+    config = config_from_dict({"rest": {"ease_s": ease_s}, "output": {"seed": float(seed)}})
+    assert (config.rest.ease_s, config.output.seed) == (ease_s, seed)
+    assert isinstance(config.rest.ease_s, float)
 
 
 def test_configs_do_not_change():
@@ -103,6 +121,7 @@ def test_configs_do_not_change():
         (b"a = [", "TOML"),
         (b"\xff\xfe\x00", "cannot be read"),
         (b"a = " + b"[" * 100000, "cannot be read"),
+        (b"a = " + b"9" * 5000, "a number in it is too long"),
         (None, "no config file"),
     ],
 )
@@ -113,6 +132,14 @@ def test_bad_files_are_named(tmp_path, content, word):
     with pytest.raises(ConfigError, match=word) as caught:
         load_config(path)
     assert "tuned.toml" in str(caught.value)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_pipe_and_a_folder_are_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    for path, words in ((tmp_path / "pipe.toml", "no regular file"), (tmp_path, "a folder")):
+        with pytest.raises(ConfigError, match=f"'{path}' cannot be read: it is {words}"):
+            load_config(path)
 
 
 def test_a_byte_order_mark_is_no_fault(tmp_path):

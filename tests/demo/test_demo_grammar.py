@@ -84,7 +84,7 @@ def test_every_word_of_the_time_domain_is_said_with_phones_that_can_be_simulated
 
 
 BROKEN = {
-    "no TOML": "[grammar\n",
+    "not TOML": "[grammar\n",
     "no .grammar.": "[other]\nprompt = ['a']\n",
     "'b' is no list": "[grammar]\nprompt = ['b']\n",
     "'a' is no list": "[grammar]\nprompt = ['a']\na = []\n",

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from corpus_tools.core import MotionError
+from corpus_tools.core import InputError
 from corpus_tools.io import read_markers, reading_notes
 
 XYZ = np.random.default_rng(5).normal(0, 50, (6, 2, 3)).round(4)
@@ -34,7 +34,7 @@ def saved(tmp_path, content, name="a.csv", encoding="utf-8"):
 
 
 def refusal(path, **given_by_caller):
-    with pytest.raises(MotionError) as caught:
+    with pytest.raises(InputError) as caught:
         read_markers(path, **given_by_caller)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -265,6 +265,13 @@ WRONG = {
     "not UTF-8": (b"time_s,l\xe4p_X,l\xe4p_Y\n".decode("latin-1"), "no UTF-8 text"),
     "NUL": ("time_s,a_X\0,\n", "NUL"),
     "vicon without names": ("Trajectories\n100\n", "no whole Vicon export"),
+    "vicon of its title alone": ("Trajectories\n", "no whole Vicon export"),
+    "vicon that ends with its title": ("Devices\n2000\nTrajectories\n", "no whole Vicon export"),
+    "faster than any camera": (
+        text([HEADER, *[[f"{i * 1e-12:.13f}", *row[1:]] for i, row in enumerate(rows()[1:])]]),
+        "1 to 100000 Hz was expected",
+    ),
+    "a name of two lines": (text(rows()).replace("chin_", "ch\x07in_"), r"name 'ch\x07in' holds characters"),
     "vicon without frames": ("\n".join(nexus().split("\n")[:5]) + "\n", "no frames"),
     "vicon with a bad rate": (nexus(rate="fast"), "'fast'"),
     "vicon without units": (nexus(units=""), "in which unit"),
@@ -277,3 +284,26 @@ def test_what_is_wrong_costs_one_sentence_that_says_where(tmp_path, what):
     content, words = WRONG[what]
     encoding = "latin-1" if what == "not UTF-8" else "utf-8"
     assert words in refusal(saved(tmp_path, content, encoding=encoding))
+
+
+@given(data=st.data())
+def test_rows_that_are_cut_lost_or_doubled_give_motion_or_a_sentence(tmp_path_factory, data):
+    content = data.draw(st.sampled_from([nexus(), nexus(extra="Devices\n2000\n1,0\n"), text(rows())]))
+    lines = content.splitlines()
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(lines) - 1))
+        change = data.draw(st.sampled_from(["end here", "lose", "double", "first cell alone"]))
+        if change == "end here":
+            lines = lines[: at + 1]
+        elif change == "lose":
+            lines[at] = ""
+        elif change == "double":
+            lines.insert(at, lines[at])
+        else:
+            lines[at] = lines[at].split(",")[0]
+    path = saved(tmp_path_factory.mktemp("rows"), "\n".join(lines) + "\n")
+    try:
+        assert np.isfinite(read_markers(path).rate_hz)
+    except InputError as error:
+        assert str(path) in str(error)  # noqa: PT017  either outcome is right
+        assert "\n" not in str(error)  # noqa: PT017

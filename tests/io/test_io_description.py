@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import tomllib
 
 import pytest
@@ -104,6 +105,8 @@ WRONG = {
     "schema 0": (M + "schema = 0", "schema", ""),
     "no TOML": ("motion =", "TOML", ""),
     "key twice": (M + M, "TOML", ""),
+    "a number of 5000 digits": (M + "schema = " + "9" * 5000, "TOML", "a number in it is too long"),
+    "brackets in brackets": (M + "name = " + "[" * 100_000, "read", "too deep"),
     "UTF-16": (b"\xff\xfem\x00", "read", ""),
 }
 
@@ -133,4 +136,24 @@ def test_what_is_no_corpus_says_how_to_make_one(tmp_path):
 def test_a_folder_in_the_place_of_the_file_is_refused(tmp_path):
     (tmp_path / CORPUS_FILE).mkdir()
     with pytest.raises(CorpusError, match=CORPUS_FILE):
+        read_description(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+@pytest.mark.parametrize("through", [False, True])
+def test_a_pipe_or_a_device_is_refused_and_not_waited_for(tmp_path, through):
+    os.mkfifo(tmp_path / ("pipe" if through else CORPUS_FILE))
+    if through:
+        (tmp_path / CORPUS_FILE).symlink_to("pipe")
+    with pytest.raises(CorpusError, match=f"{CORPUS_FILE}' cannot be read: it is no regular file"):
+        read_description(tmp_path)
+
+
+def test_a_link_to_a_file_is_followed_and_a_huge_one_is_refused(tmp_path):
+    (tmp_path / "real.toml").write_text(M)
+    (tmp_path / CORPUS_FILE).symlink_to("real.toml")
+    assert read_description(tmp_path).motion == PATTERN
+    with (tmp_path / "real.toml").open("r+b") as stream:
+        stream.truncate(1 << 30)
+    with pytest.raises(CorpusError, match="more than 16 MB"):
         read_description(tmp_path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import tracemalloc
 import zlib
 
 import numpy as np
@@ -13,6 +14,7 @@ from scipy.io import savemat
 
 from corpus_tools.core import InputError
 from corpus_tools.io import read_audio, read_labels, read_markers
+from corpus_tools.io.mat_layout import MatLayoutError, struct_names
 
 LABELS = [("sp", (0.0, 0.1)), ("AA1", (0.1, 0.25))]
 
@@ -134,6 +136,41 @@ def test_packed_files_are_read_and_other_variables_do_not_matter(tmp_path):
     savemat(tmp_path / "a.mat", held, do_compression=True)
     plain = read_markers(saved(tmp_path / "b.mat", channels()))
     np.testing.assert_array_equal(read_markers(tmp_path / "a.mat").positions_mm, plain.positions_mm)
+
+
+def test_what_unpacks_to_too_much_is_refused_and_not_unpacked():
+    bomb = zlib.compress(struct.pack("<II", 14, 50_000_000) + bytes(50_000_000))
+    data = bytes(126) + b"IM" + struct.pack("<II", 15, len(bomb)) + bomb
+    tracemalloc.start()
+    with pytest.raises(MatLayoutError, match="more than is unpacked at once"):
+        struct_names(data, most_bytes=1_000_000)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 5_000_000
+
+
+def test_a_packed_variable_that_breaks_off_and_a_crowd_of_arrays_are_refused(tmp_path, monkeypatch):
+    data = saved(tmp_path / "a.mat", channels()).read_bytes()
+    body = zlib.compress(data[128:])[:-5]
+    with pytest.raises(MatLayoutError, match="cut short"):
+        struct_names(data[:128] + struct.pack("<II", 15, len(body)) + body)
+    n_fields = 3 * 5
+    monkeypatch.setattr("corpus_tools.io.mat_layout._MOST_ARRAYS", n_fields)
+    assert struct_names(data) == {"take": True}
+    monkeypatch.setattr("corpus_tools.io.mat_layout._MOST_ARRAYS", n_fields - 1)
+    with pytest.raises(MatLayoutError, match="15 arrays"):
+        struct_names(data)
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_numbers_that_take_more_than_they_are_written_in_are_counted(tmp_path, packed):
+    held = [*channels()[:1], channel("UL", 100, np.zeros((1000, 6), np.int8))]
+    savemat(tmp_path / "a.mat", {"take": struct_array(held)}, do_compression=packed)
+    data = (tmp_path / "a.mat").read_bytes()
+    n_numbers = 4000 + 6000
+    assert struct_names(data, most_bytes=8 * n_numbers + 4000) == {"take": True}
+    with pytest.raises(MatLayoutError, match="numbers take more"):
+        struct_names(data, most_bytes=8 * n_numbers - 1)
 
 
 @given(data=st.data())

@@ -71,10 +71,21 @@ WRONG = {
     "names as objects": ({"xyz": XYZ, "fps": 25.0, "names": NAMES.astype(object)}, "allow_pickle"),
     "positions as objects": ({"xyz": XYZ.astype(object), "fps": 25.0, "names": NAMES}, "allow_pickle"),
     "complex positions": ({"xyz": XYZ + 1j, "fps": 25.0, "names": NAMES}, "complex"),
-    "rate is not a number": ({"xyz": XYZ, "fps": np.nan, "names": NAMES}, "fps = nan"),
-    "rate is infinite": ({"xyz": XYZ, "fps": np.inf, "names": NAMES}, "fps = inf"),
-    "rate is zero": ({"xyz": XYZ, "fps": 0, "names": NAMES}, "fps = 0"),
-    "rate is negative": ({"xyz": XYZ, "fps": -25.0, "names": NAMES}, "fps = -25"),
+    "rate is not a number": ({"xyz": XYZ, "fps": np.nan, "names": NAMES}, "frame rate is nan"),
+    "rate is infinite": ({"xyz": XYZ, "fps": np.inf, "names": NAMES}, "frame rate is inf"),
+    "rate is zero": ({"xyz": XYZ, "fps": 0, "names": NAMES}, "frame rate is 0"),
+    "rate is negative": ({"xyz": XYZ, "fps": -25.0, "names": NAMES}, "frame rate is -25"),
+    "rate is a period": ({"xyz": XYZ, "fps": 0.04, "names": NAMES}, "1 to 100000 Hz was expected"),
+    "rate of a damaged file": ({"xyz": XYZ, "fps": 1e300, "names": NAMES}, "1 to 100000 Hz was expected"),
+    "larger than any number": (
+        {"xyz": np.full((1, 2, 3), 1e308), "fps": 25.0, "names": NAMES, "units": "m"},
+        "infinitely far",
+    ),
+    "a name with a line feed": (
+        {"xyz": XYZ, "fps": 25.0, "names": np.array(["a\nb", "c"])},
+        r"name 'a\nb' holds characters that cannot be printed",
+    ),
+    "a name with an escape": ({"xyz": XYZ, "fps": 25.0, "names": np.array(["a", "\x1b[31m"])}, "'\\x1b[31m'"),
     "two rates": ({"xyz": XYZ, "fps": np.array([25.0, 30.0]), "names": NAMES}, "fps of float64 (2,)"),
     "rate is a text": ({"xyz": XYZ, "fps": np.array("25"), "names": NAMES}, "fps of <U2"),
     "no frames": ({"xyz": XYZ[:0], "fps": 25.0, "names": NAMES}, "no frames"),
@@ -95,6 +106,20 @@ def test_arrays_that_are_no_motion_are_refused(tmp_path, what):
         read_markers(path)
     assert str(path) in str(caught.value)
     assert words in str(caught.value)
+
+
+def test_an_archive_that_holds_too_much_is_refused_before_it_is_unpacked(tmp_path, monkeypatch):
+    np.savez_compressed(tmp_path / "a.npz", xyz=np.zeros((100, 50, 3)), fps=25.0, names=np.array(["a"] * 50))
+    np.savez_compressed(tmp_path / "b.npz", xyz=np.zeros((100, 50, 3), np.int8), fps=25.0, names=NAMES)
+    np.savez_compressed(tmp_path / "c.npz", xyz=XYZ, fps=25.0, names=NAMES, other=np.zeros(20_000))
+    monkeypatch.setattr("corpus_tools.io.formats.LARGEST_UNPACKED_BYTES", 100_000)
+    for name in "ab":  # b: 15 KB that become 120 KB as numbers
+        with pytest.raises(MotionError, match=rf"{name}\.npz' holds .* when it is unpacked"):
+            read_markers(tmp_path / f"{name}.npz")
+    assert read_markers(tmp_path / "c.npz").n_frames == len(XYZ)  # what is not read does not matter
+    monkeypatch.setattr("numpy.load", lambda *args, **options: pytest.fail("it was opened"))
+    with pytest.raises(MotionError, match="when it is unpacked"):
+        read_markers(tmp_path / "a.npz")
 
 
 def test_an_object_array_is_never_unpickled(tmp_path):

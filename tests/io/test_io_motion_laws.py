@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,6 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 from corpus_tools.core import Capture, InputError, MotionError, Trajectory
 from corpus_tools.io import MOTION_READERS, MOTION_WRITERS, read_markers, reading_notes, write_motion_file
+from corpus_tools.io.motion_parts import capture_of
 
 SUFFIX = {"npz": ".npz", "c3d": ".c3d", "trc": ".trc", "csv": ".csv", "csv-long": ".csv"}
 # relative to the size of a value (float32), or mm (six decimals, exact)
@@ -81,6 +84,8 @@ def test_equal_motion_gives_equal_bytes(tmp_path, form):
         (["a", " b"], 25.0, "blanks at its ends"),
         (["a"], 25.0, "1 names"),
         (["a", "b"], 0.0, "frame rate"),
+        (["a", "b"], 0.5, "frame rate"),
+        (["a", "b"], 1e6, "frame rate"),
         (["a", "b"], float("nan"), "frame rate"),
     ],
 )
@@ -172,6 +177,41 @@ def test_damage_gives_motion_or_a_sentence(tmp_path_factory, form, data):
     else:
         assert capture.positions_mm.shape[2] == 3
         assert not np.isinf(capture.positions_mm).any()
+
+
+@pytest.mark.parametrize("name", ["a\nb", "a\x00b", "\x1b[31m", "a\u202eb", "\ud800", "a\u2028b", "a\xa0b"])
+def test_no_reader_gives_a_name_that_no_writer_takes(tmp_path, name):
+    with pytest.raises(MotionError, match=r"here.*characters that cannot be printed"):
+        capture_of(tmp_path / "here", np.zeros((2, 2, 3)), ["b", name], 50.0, format="any", notes=[])
+
+
+@pytest.mark.parametrize("form", SUFFIX)
+def test_a_control_character_in_a_file_costs_one_sentence(tmp_path, form):
+    path = written(tmp_path, form, np.zeros((4, 1, 3)), ["QQ"], 50.0)
+    if form == "npz":
+        with np.load(path) as data:
+            held = dict(data)
+        np.savez(path, **held | {"names": np.array(["Q\x07"])})
+    else:
+        path.write_bytes(path.read_bytes().replace(b"QQ", b"Q\x07"))
+    assert r"'Q\x07'" in refusal(path)
+
+
+@pytest.mark.parametrize("bits", [0x7FA00001, 0xFFA00001, 0x7F800000, 0x7F7FFFFF])
+@pytest.mark.parametrize("unit", ["mm", "m"])
+def test_floats_that_are_none_print_nothing(tmp_path, bits, unit):
+    path = written(tmp_path, "c3d", np.full((4, 1, 3), 7.25), ["a"], 50.0)
+    path.write_bytes(path.read_bytes().replace(np.float32(7.25).tobytes(), np.uint32(bits).tobytes(), 2))
+    huge = tmp_path / "huge.npz"
+    np.savez(huge, xyz=np.full((4, 1, 3), 1e308), fps=25.0, names=np.array(["a"]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            read_markers(path, units=unit)
+        except MotionError as error:
+            assert "infinitely" in str(error)  # noqa: PT017  either outcome is right
+        if unit == "m":
+            assert "infinitely" in refusal(huge, units=unit)
 
 
 @pytest.mark.parametrize("suffix", MOTION_READERS)

@@ -191,7 +191,36 @@ BROKEN = {
         HEAD.encode() + b'1\n"TextTier"\n"p"\n0\n1\n1\n0.1\n"a"\n0.2\n"b"\n',
         "has 1 labels and holds 2",
     ),
-    "latin-1": ("a.TextGrid", HEAD.encode() + b'1\n"TextTier"\n"\xe9"\n0\n1\n0\n', "utf-8"),
+    "latin-1": (
+        "a.TextGrid",
+        HEAD.encode() + b'1\n"TextTier"\n"\xe9"\n0\n1\n0\n',
+        "(it is neither UTF-8 nor",
+    ),
+    "a size of 5000 digits": (
+        "a.TextGrid",
+        HEAD.encode() + b'1\n"TextTier"\n"p"\n0\n1\n' + b"9" * 5000 + b"\n",
+        "(a number in it is too long)",
+    ),
+    "a word for a size": (
+        "a.TextGrid",
+        HEAD.encode() + b'1\n"TextTier"\n"p"\n0\n1\nmany\n',
+        "holds 0 whole ones",
+    ),
+    "a quotation mark in a label": (
+        "a.TextGrid",
+        HEAD.replace("0\n1\n", "xmin = 0\nxmax = 1\n").replace("<", "tiers? <").encode()
+        + b'size = 1\nitem []:\n    item [1]:\n        class = "TextTier"\n        name = "p"\n'
+        + b"        xmin = 0\n"
+        + b"        xmax = 1\n        points: size = 1\n        points [1]:\n            number = 0.5\n"
+        + b'            mark = "say "hi" now"\n',
+        "a quotation mark within a label is not doubled",
+    ),
+    "a word for a time": (
+        "a.json",
+        b'{"xmin":0,"xmax":"end","tiers":[]}',
+        "('end' stands where a number was expected)",
+    ),
+    "JSON with 5000 digits": ("a.json", b'{"xmin":' + b"9" * 5000 + b"}", "it is no JSON with xmin"),
     "JSON of another kind": ("a.json", b'{"a": 1}', "praatio"),
     "JSON list": ("a.json", b"[1, 2]", "TextGrid"),
     "deep JSON": ("a.json", b'{"xmin":0,"xmax":1,"tiers":' + b"[" * 100_000, "TextGrid"),
@@ -223,6 +252,7 @@ def test_a_broken_file_is_named_in_one_sentence(tmp_path, what):
     assert str(tmp_path / name) in message
     assert words in message
     assert "\n" not in message
+    assert not any(w in message for w in ("literal", "int()", "sys.", "digits", "codec", "Error")), message
     assert (tmp_path / name).read_bytes() == data
 
 

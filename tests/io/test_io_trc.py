@@ -83,6 +83,7 @@ WRONG = {
     "cut short": (lambda lines: lines[:9], ["6 frames and 3 rows"]),
     "cut in a row": (lambda lines: [*lines[:11], lines[11][:30]], ["line 12 has 4 cells"]),
     "commas": (lambda lines: [line.replace("\t", ",") for line in lines], ["separated by commas"]),
+    "nothing between columns": (lambda lines: ["PathFileType", *["x"] * 6], ["no tabs in its first lines"]),
     "spaces": (lambda lines: [" ".join(line.split()) for line in lines], ["separated by spaces"]),
     "commas and lies": (
         lambda lines: [line.replace("\t", ",") for line in edit(2, "\t6\t", "\t652\t")(lines)],

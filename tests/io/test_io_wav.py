@@ -61,3 +61,59 @@ def test_a_sound_without_samples_is_refused(tmp_path):
     soundfile.write(tmp_path / "a.wav", np.zeros(0), 16000)
     with pytest.raises(InputError, match=r"a\.wav.*no samples"):
         read_audio(tmp_path / "a.wav")
+
+
+@pytest.mark.parametrize("rate_hz", [1, 999, 768_001, 2**31 - 1])
+def test_a_sampling_rate_that_cannot_be_is_refused(tmp_path, rate_hz):
+    soundfile.write(tmp_path / "a.wav", np.zeros(10), rate_hz)
+    with pytest.raises(InputError, match=rf"a\.wav.* {rate_hz} samples per second; 1000 to 768000"):
+        read_audio(tmp_path / "a.wav")
+    soundfile.write(tmp_path / "b.wav", np.zeros(10), {1: 1000}.get(rate_hz, 768_000))
+    assert len(read_audio(tmp_path / "b.wav").samples) == 10
+
+
+@pytest.mark.parametrize("suffix", [".wav", ".flac", ".aiff"])
+def test_sound_that_fills_the_memory_is_refused_by_its_header(tmp_path, monkeypatch, suffix):
+    path = tmp_path / f"a{suffix}"
+    soundfile.write(path, np.zeros((1000, 2)), 16000)
+    monkeypatch.setattr("corpus_tools.io.wav.LARGEST_SOUND_BYTES", 8000)
+    assert len(read_audio(path).samples) == 1000
+    monkeypatch.setattr("corpus_tools.io.wav.LARGEST_SOUND_BYTES", 7999)
+    monkeypatch.setattr("soundfile.SoundFile.read", lambda *args, **options: pytest.fail("it was read"))
+    with pytest.raises(InputError, match="1000 samples in 2 channels"):
+        read_audio(path)
+
+
+@pytest.mark.parametrize(
+    ("form", "subtype", "good"),
+    [
+        ("WAV", "PCM_16", True),
+        ("WAVEX", "PCM_24", True),
+        ("RF64", "PCM_16", True),
+        ("W64", "PCM_16", True),
+        ("NIST", "PCM_16", True),
+        ("FLAC", "PCM_16", True),
+        ("OGG", "VORBIS", True),
+        ("AIFF", "PCM_16", True),
+        ("AU", "PCM_16", True),
+        ("CAF", "PCM_16", True),
+        ("MP3", "MPEG_LAYER_III", False),
+    ],
+)
+def test_what_a_sound_file_is_its_first_bytes_say_and_nothing_is_printed(
+    tmp_path, capfd, form, subtype, good
+):
+    path = tmp_path / "a.wav"
+    soundfile.write(path, np.zeros(16000), 16000, format=form, subtype=subtype)
+    if not good:
+        path.write_bytes(path.read_bytes()[:-300])
+    if good:
+        assert read_audio(path).rate_hz == 16000
+    else:
+        with pytest.raises(InputError, match=r"a\.wav' does not begin as"):
+            read_audio(path)
+        inside = b"RIFF\xff\x0f\0\0WAVEfmt \x10\0\0\0\x55\0\1\0" + path.read_bytes()
+        (tmp_path / "inside.wav").write_bytes(inside)
+        with pytest.raises(InputError, match=r"inside\.wav' does not begin as"):
+            read_audio(tmp_path / "inside.wav")
+    assert capfd.readouterr() == ("", "")
