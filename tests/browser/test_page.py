@@ -216,6 +216,10 @@ def test_the_frame_keeps_its_sizes_and_nothing_is_clipped(browser_page, served, 
     assert button["y"] + button["height"] <= foot["y"] + foot["height"] <= 876
     for header in browser_page.locator(".card > header:visible").all():
         assert header.evaluate("e => e.scrollWidth <= e.clientWidth")
+    told = browser_page.locator(".fragments .sub")
+    assert told.evaluate("e => e.scrollWidth <= e.clientWidth"), told.inner_text()
+    for words in browser_page.locator(".slot.presets button").all():
+        assert words.evaluate("e => e.scrollWidth <= e.clientWidth"), words.inner_text()
 
 
 def test_a_wrong_folder_is_said_where_it_was_typed(browser_page, served):

@@ -5,7 +5,7 @@ import itertools
 import pytest
 from browser import chromium as shared
 from browser.paged import drawn, lane, settled, until
-from browser.shown import FIND
+from browser.shown import FIND, FIND_ALL
 
 from corpus_tools.config import load_config
 
@@ -65,6 +65,19 @@ def test_every_join_in_view_has_a_badge_and_w_goes_to_the_overlap(opened):
     until(browser_page, lambda: session.overlap_s == 0.115)
     browser_page.keyboard.press("2")  # letters and digits still act
     until(browser_page, lambda: session.weighting == "raised-cosine")
+
+
+def test_the_wheel_zooms_the_recorded_head_too_and_0_resets_both(opened):
+    browser_page, _ = opened
+    far = "Math.hypot(...v.camera.position.map((p, k) => p - v.camera.focal_point[k]))"
+    both = f"{FIND_ALL}.slice(0, 2).map((c) => c.vsw).map((v) => {far})"
+    box = browser_page.locator(".over.inset:not(.gone)").bounding_box()
+    at_first = browser_page.evaluate(both)
+    browser_page.mouse.move(box["x"] + 60, box["y"] + 60)  # over the recorded head it is the same wheel
+    browser_page.mouse.wheel(0, 300)
+    browser_page.wait_for_function(f"(a) => {both}.every((f, i) => f > 1.2 * a[i])", arg=at_first)
+    browser_page.keyboard.press("0")
+    browser_page.wait_for_function(f"(a) => {both}.every((f, i) => Math.abs(f - a[i]) < 1e-6)", arg=at_first)
 
 
 def test_an_export_goes_beside_the_corpus_and_its_line_is_copied_whole(opened, served):

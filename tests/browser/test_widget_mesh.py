@@ -176,6 +176,44 @@ def test_the_mouse_turns_the_camera_and_python_hears_of_it(serve, browser_page):
     assert shown.get("v.hash()") != before
 
 
+FAR = "Math.hypot(...v.camera.position.map((p, k) => p - v.camera.focal_point[k]))"
+
+
+def test_the_wheel_keeps_its_limits_and_scrolls_where_it_needs_ctrl(serve, browser_page):
+    shown = Shown(serve, browser_page, single(plane(color="red")))
+    box = browser_page.get_by_role("img", name="3-D view of a head").bounding_box()
+    x, y = box["x"] + 210, box["y"] + 190
+
+    def wheel(turn, far):
+        for _ in range(3):
+            browser_page.mouse.wheel(0, turn)
+        shown.until(f"Math.abs({FAR} - a) < 1e-6", far)
+
+    near, away = shown.view.zoom_limits
+    browser_page.mouse.move(x, y)
+    wheel(-2000, 10 * near)
+    wheel(4000, 10 * away)
+    browser_page.keyboard.press("0")  # it is not for a view without the focus
+    browser_page.mouse.dblclick(x, y)  # on the plate: two picks, and the camera stays
+    assert shown.get(FAR) == pytest.approx(10 * away)
+    browser_page.mouse.dblclick(box["x"] + 5, box["y"] + 5)
+    shown.until(f"Math.abs({FAR} - 10) < 1e-6")
+    browser_page.mouse.move(x, y)
+    wheel(-2000, 10 * near)
+    browser_page.keyboard.press("0")
+    shown.until(f"Math.abs({FAR} - 10) < 1e-6")
+    browser_page.evaluate("document.body.style.height = '3000px'")
+    shown.call(lambda: setattr(shown.view, "wheel_needs_ctrl", True))
+    shown.until("v.model.wheel_needs_ctrl")
+    browser_page.mouse.wheel(0, 30)
+    browser_page.get_by_text("Ctrl + wheel zooms").wait_for()
+    browser_page.wait_for_function("() => scrollY === 30")
+    assert shown.get(FAR) == 10
+    browser_page.keyboard.down("Control")
+    wheel(-2000, 10 * near)
+    browser_page.keyboard.up("Control")
+
+
 def test_two_sessions_do_not_share_clock_or_motion(serve, browser_page):
     actor = {**plane(color="red"), "basis": np.eye(25, dtype=np.float32).tobytes()}
     shown = Shown(serve, browser_page, single(actor))

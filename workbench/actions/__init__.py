@@ -11,7 +11,16 @@ from workbench.actions.export import (
     suggested_path,
 )
 from workbench.actions.jobs import Cancelled, Gate, Job, LatestJob
-from workbench.actions.picks import ban_unit, heard, options_shown, swap_to, swap_unit, toggle_pin, unban
+from workbench.actions.picks import (
+    ban_unit,
+    heard,
+    is_tried,
+    options_shown,
+    swap_to,
+    swap_unit,
+    toggle_pin,
+    unban,
+)
 
 __all__ = [
     "Cancelled",
@@ -27,6 +36,7 @@ __all__ = [
     "exports_beside",
     "heard",
     "inside_root",
+    "is_tried",
     "options_shown",
     "replay_command",
     "suggested_path",

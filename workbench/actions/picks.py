@@ -5,7 +5,7 @@ from __future__ import annotations
 from corpus_tools.core import Audio
 from workbench.state import Options, Session, options_of, pin_at, with_pin, without_pin
 
-__all__ = ["ban_unit", "heard", "options_shown", "swap_to", "swap_unit", "toggle_pin", "unban"]
+__all__ = ["ban_unit", "heard", "is_tried", "options_shown", "swap_to", "swap_unit", "toggle_pin", "unban"]
 
 _AROUND_S = 0.05
 
@@ -40,13 +40,25 @@ def swap_unit(session: Session, step: int) -> bool:
     return swap_to(session, (options.at + step) % len(options.options))
 
 
+def is_tried(session: Session) -> bool:
+    """Whether the selected place is pinned by a swap that nobody has kept yet."""
+    options = session.options
+    return options is not None and options.tried and options.options[options.at].pin in session.pins
+
+
 def toggle_pin(session: Session) -> bool:
-    """Pin the selected fragment, so that the search must use it there; or let it go again."""
+    """Pin the selected fragment, so that the search must use it there; or let it go again.
+
+    One that a swap has pinned is only kept: it stays pinned until this is called once more.
+    """
     result = session.result
     if result is None or session.selected >= len(result.selection.chosen):
         return False
     chosen = result.selection.chosen[session.selected]
-    if pin_at(session.pins, chosen.first, chosen.last):
+    if is_tried(session):
+        assert session.options is not None
+        session.options = session.options.kept()
+    elif pin_at(session.pins, chosen.first, chosen.last):
         session.param.update(pins=without_pin(session.pins, chosen.first, chosen.last), options=None)
     else:
         session.pins = with_pin(session.pins, options_of(result, session.selected).options[0])

@@ -235,6 +235,8 @@ class BlendPage:
 
     def _sound(self, event: Any) -> None:
         result, old = event.new, event.old
+        if result is not None and self.export.kind == "err":  # what it complains of may be mended
+            self.export.show("", "")
         if result is None:
             self.transport.load_sound(None, 0.0)
         elif old is None or not old.request.same_target(result.request):
@@ -280,6 +282,7 @@ class BlendPage:
             "export": self.export.submit,
             "theme": self.bar.toggle_theme,
             "view": self.board.switch_view,
+            "camera": self.board.reset_camera,
             "cancel": self.desk.cancel,
         }
 

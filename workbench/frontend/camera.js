@@ -6,6 +6,7 @@ const SETTLE_MS = 200;
 const TURN = Math.PI / 18;
 /** A press that moves less than this is a click, px. */
 const CLICK_PX = 4;
+const ANYWHERE = [0, Infinity];
 
 export class Trackball {
   /**
@@ -13,8 +14,11 @@ export class Trackball {
    * @param {() => object} home the camera of a reset
    * @param {(settled: boolean) => void} changed called after every change; settled: the hand has let go
    * @param {(event: PointerEvent) => void} clicked called for a press without a drag
+   * @param {() => number[]} limits nearest and farthest distance, as shares of that of the camera of a reset
+   * @param {(event: WheelEvent) => boolean} zooms whether a wheel is for this picture, not for the page
    */
-  constructor(canvas, home, changed, clicked = () => {}) {
+  constructor(canvas, home, changed, clicked = () => {}, limits = () => ANYWHERE, zooms = () => true) {
+    Object.assign(this, { limits, zooms });
     this.canvas = canvas;
     this.home = home;
     this.changed = changed;
@@ -88,15 +92,32 @@ export class Trackball {
     camera.focal_point = add(camera.focal_point, shift);
   }
 
-  /** Come nearer (factor below 1) or go away. */
-  dolly(factor) {
+  /** Come nearer (factor below 1) or go away, within the limits; who is beyond them may come back. */
+  dolly(wanted) {
     const { camera } = this;
     const offset = subtract(camera.position, camera.focal_point);
+    const factor = this.within(wanted, camera.parallel_scale || length(offset));
     camera.position = add(camera.focal_point, scale(offset, factor));
     if (camera.parallel_scale) camera.parallel_scale *= factor;
   }
 
+  /** The part of a factor that the limits leave. */
+  within(factor, now) {
+    const home = this.home();
+    if (!home) return factor;
+    const unit = home.parallel_scale || length(subtract(home.position, home.focal_point));
+    const [nearest, farthest] = this.limits().map((share) => share * unit);
+    return Math.min(Math.max(factor, Math.min(1, nearest / now)), Math.max(1, farthest / now));
+  }
+
+  /** Look as at first. */
+  reset() {
+    this.camera = this.home();
+    this.changed(true);
+  }
+
   wheel(event) {
+    if (!this.zooms(event)) return;
     event.preventDefault();
     if (!this.camera) return;
     this.dolly(Math.exp(event.deltaY * DOLLY_PER_PX));
@@ -109,6 +130,7 @@ export class Trackball {
     if (event.ctrlKey || event.metaKey || event.altKey || !this.camera) return;
     const act = {
       r: () => (this.camera = this.home()),
+      0: () => (this.camera = this.home()),
       ArrowLeft: () => this.turn(TURN, 0),
       ArrowRight: () => this.turn(-TURN, 0),
       ArrowUp: () => this.turn(0, TURN),

@@ -113,9 +113,11 @@ export function renderCurve({ model, el }) {
     ctx.globalAlpha = 1;
     drawUnused(ctx, box(), model.unused, p);
     ctx.font = `600 12px ${p.family}`;
+    const across = w - half() - 16;
+    if (ctx.measureText(model.title).width > across) ctx.font = `600 11px ${p.family}`;
     ctx.textAlign = "left";
     ctx.fillStyle = p.ink;
-    ctx.fillText(fitText(ctx, model.title, w - half() - 16), half() + 8, 20);
+    ctx.fillText(fitText(ctx, model.title, across), half() + 8, 20);
     drawEffect(ctx, [half() + 30, 32, w - 16, h - 52], { ...model.effect, known: Boolean(model.title) }, p);
     ctx.font = `400 11px ${p.family}`;
     ctx.textAlign = "left";

@@ -3,6 +3,7 @@ import { Trackball } from "./camera.js";
 import { clock } from "./clock.js";
 import { Loan } from "./contexts.js";
 import { Scene } from "./gl_scene.js";
+import { Hint } from "./hint.js";
 import { Legend } from "./legend.js";
 import { floats } from "./linalg.js";
 import { Motion } from "./motion.js";
@@ -45,12 +46,16 @@ export class View {
     this.motion = new Motion(null);
     this.scene = new Scene(canvas);
     this.legend = new Legend(box);
+    this.hint = new Hint(box, "Ctrl + wheel zooms");
     this.trackball = new Trackball(
       canvas,
       () => this.home(),
       (settled) => this.cameraMoved(settled),
       (event) => this.pickAt(event, "picked"),
+      () => model.zoom_limits,
+      (event) => this.wheelIsMine(event),
     );
+    canvas.addEventListener("dblclick", (event) => this.found(event) || this.trackball.reset());
     canvas.addEventListener("pointermove", (event) => this.hover(event));
     this.loan = new Loan(this);
     this.loan.take();
@@ -74,8 +79,9 @@ export class View {
     return rgb(model.ground || model.palettes[model.theme].view);
   }
 
+  /** The camera of a reset: the one said to be it, else the one that Python set last, else a look at all. */
   home() {
-    const set = this.homeCamera;
+    const set = this.model.home?.position ? this.model.home : this.homeCamera;
     return structuredClone(set?.position ? set : this.scene.fit());
   }
 
@@ -107,7 +113,7 @@ export class View {
   setCamera() {
     if (this.sending) return;
     this.homeCamera = this.model.camera?.position ? structuredClone(this.model.camera) : null;
-    this.trackball.camera = this.home();
+    this.trackball.camera = structuredClone(this.homeCamera ?? this.home());
     this.ask();
   }
 
@@ -175,7 +181,7 @@ export class View {
   /** A message of Python: what it changes is kept in the specs, too. */
   message(data) {
     if (data.type === "add") for (const spec of data.actors) this.add(spec);
-    if (data.type === "reset_camera") this.trackball.camera = this.home();
+    if (data.type === "reset_camera") this.trackball.reset();
     const spec = this.specs.get(data.actor);
     const actor = this.scene.actors.get(data.actor);
     if (data.n) this.waiting.push({ n: data.n, received: performance.now() });
@@ -204,12 +210,24 @@ export class View {
 
   /** Tell Python what is under the pointer. */
   pickAt(event, what) {
-    if (this.lost) return;
+    if (!this.lost) this.model.send_msg({ type: "pick", what, found: this.found(event) });
+  }
+
+  /** What is under the pointer, or null. */
+  found(event) {
+    if (this.lost) return null;
     const box = this.canvas.getBoundingClientRect();
     const ratio = this.canvas.width / box.width;
     const x = Math.floor((event.clientX - box.left) * ratio) + 0.5;
     const y = this.canvas.height - Math.floor((event.clientY - box.top) * ratio) - 0.5;
-    this.model.send_msg({ type: "pick", what, found: pick(this.scene, this.camera, x, y) });
+    return pick(this.scene, this.camera, x, y);
+  }
+
+  /** In a page that scrolls the wheel zooms with Ctrl only; without, it is said how. */
+  wheelIsMine(event) {
+    if (!this.model.wheel_needs_ctrl || event.ctrlKey || event.metaKey) return true;
+    this.hint.show();
+    return false;
   }
 
   /** While hovering is on, at most once a frame and never during a drag. */
@@ -263,6 +281,7 @@ export class View {
     for (const asked of [this.asked, this.hovering]) cancelAnimationFrame(asked);
     clearTimeout(this.resting);
     this.trackball.dispose();
+    this.hint.dispose();
     this.scene.dispose();
   }
 }

@@ -33,8 +33,11 @@ export class Stills {
     this.clock = clock(model.session);
     this.trackball = new Trackball(
       this.picture,
-      () => null,
+      () => (model.home?.position ? structuredClone(model.home) : null),
       () => this.ask(),
+      undefined,
+      () => model.zoom_limits,
+      (event) => !model.wheel_needs_ctrl || event.ctrlKey || event.metaKey,
     );
     this.connect();
     model.send_msg({ type: "unavailable", reason });
@@ -65,7 +68,7 @@ export class Stills {
 
   message(data) {
     if (data.type === "picture") this.take(data);
-    else if (data.type === "reset_camera") this.forget();
+    else if (data.type === "reset_camera") this.trackball.reset();
     else this.ask();
   }
 

@@ -37,6 +37,8 @@ class Options:
 
     options: tuple[Option, ...]
     at: int = 0
+    tried: bool = False
+    """Whether the one that is shown is only tried, until it is kept."""
 
     @property
     def first(self) -> int:
@@ -52,7 +54,11 @@ class Options:
 
     def moved(self, step: int) -> Options:
         """Return the options with the next (or another) one shown, round and round."""
-        return replace(self, at=(self.at + step) % len(self.options))
+        return replace(self, at=(self.at + step) % len(self.options), tried=True)
+
+    def kept(self) -> Options:
+        """Return the options with the one that is shown kept."""
+        return replace(self, tried=False)
 
 
 def options_of(result: Result, index: int) -> Options:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy.typing as npt
 
 from corpus_tools.core import Mesh
 
-__all__ = ["face_frame", "head_camera", "look_at", "skin_mm"]
+__all__ = ["distance", "face_frame", "head_camera", "look_at", "skin_mm"]
 
 _VIEW_ANGLE_DEG = 20.0
 _AROUND_DEG = 22.0
@@ -62,6 +63,11 @@ def look_at(
         "view_angle": _VIEW_ANGLE_DEG,
         "parallel_scale": 0.0,
     }
+
+
+def distance(camera: Mapping[str, Any]) -> float:
+    """Return how far a camera stands from what it looks at, mm."""
+    return float(np.linalg.norm(np.subtract(camera["position"], camera["focal_point"])))
 
 
 def head_camera(mesh: Mesh, aside: float = 0.0) -> dict[str, Any]:

@@ -116,6 +116,7 @@ def preset_buttons(controls: Controls, label: str, name: str, options: dict[str,
         sx={
             "& .MuiToggleButton-root": {
                 "flex": "1 1 auto",
+                "width": "auto",  # else all are as wide as each other, and the long words run over
                 "minWidth": 0,
                 "paddingLeft": 0.5,
                 "paddingRight": 0.5,

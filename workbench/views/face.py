@@ -11,10 +11,10 @@ import pyvista.plotting
 from corpus_tools.mesh import PatchBinding, mesh_by_name_or_file
 from corpus_tools.pipeline import Head
 from workbench.state import Result
-from workbench.views.cameras import head_camera
+from workbench.views.cameras import distance, head_camera
 from workbench.views.cast import cast_camera, cast_places, cast_prefix
 from workbench.views.head_actors import OVERLAYS, head_actors
-from workbench.views.mesh_view import MeshView
+from workbench.views.mesh_view import ZOOM_LIMITS, MeshView
 from workbench.views.speaking_head import head_motion
 
 __all__ = ["Face"]
@@ -70,7 +70,8 @@ class Face(pn.viewable.Viewer):
         """Show a head by name at rest, before there is anything that moves it."""
         mesh = mesh_by_name_or_file(name)
         self.result = self._head = None
-        self.mesh_view.show_actors(head_actors(mesh), camera=head_camera(mesh, ASIDE))
+        self._look(head_camera(mesh, ASIDE), ZOOM_LIMITS)
+        self.mesh_view.show_actors(head_actors(mesh), camera=self.mesh_view.home)
 
     def show(self, result: Result) -> None:
         """Show the head of a result and let it move."""
@@ -97,9 +98,15 @@ class Face(pn.viewable.Viewer):
         for other, place in zip(self._cast, cast_places(meshes)[1:], strict=True):
             mesh, binding = other.head.mesh, other.head.binding
             actors += head_actors(mesh, binding, prefix=cast_prefix(mesh.name), matrix=place)
-        camera = cast_camera(meshes) if self._cast else head_camera(meshes[0], ASIDE)
+        one = head_camera(meshes[0], ASIDE)
+        camera, (nearest, farthest) = cast_camera(meshes) if self._cast else one, ZOOM_LIMITS
+        self._look(camera, (nearest * distance(one) / distance(camera), farthest))
         self.mesh_view.show_actors(actors, camera=camera)
         self._show_overlays()
+
+    def _look(self, home: dict[str, Any], limits: tuple[float, float]) -> None:
+        """Take the camera that a reset goes back to."""
+        self.mesh_view.param.update(home=home, zoom_limits=limits)
 
     def _move(self) -> None:
         if self.result is None:

@@ -8,7 +8,7 @@ from typing import Any
 import panel as pn
 
 from corpus_tools.core import UnitRef
-from workbench.actions import ban_unit, options_shown, swap_to, swap_unit, toggle_pin, unban
+from workbench.actions import ban_unit, is_tried, options_shown, swap_to, swap_unit, toggle_pin, unban
 from workbench.state import Session, fragment_details, pin_at
 from workbench.views.action_html import ActionHtml
 from workbench.views.history_list import compare_html, history_html
@@ -79,7 +79,7 @@ class FragmentInspector(pn.viewable.Viewer):
         if options is not None and s.result is not None:
             chosen = s.result.selection.chosen[s.selected]
             pinned = bool(pin_at(s.pins, chosen.first, chosen.last))
-            parts.append(options_html(options, s.text_of, pinned, self._begins_s))
+            parts.append(options_html(options, s.text_of, pinned, is_tried(s), self._begins_s))
         parts += [bans_html(s.bans), compare_html(s), history_html(s)]
         self.pane.html = "".join(parts)
 

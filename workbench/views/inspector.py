@@ -138,10 +138,17 @@ def _option_row(index: int, option: Option, options: Options, text: str, at_s: f
     )
 
 
+def _pin_button(pinned: bool, tried: bool) -> tuple[str, str]:
+    if tried:
+        return "Keep", "Keep the one that is tried here"
+    return ("Unpin", "Let the search choose here") if pinned else ("Pin", "Keep it here")
+
+
 def options_html(
     options: Options,
     text_of: Callable[[str], str],
     pinned: bool,
+    tried: bool,
     at_s: Callable[[UnitRef], float],
 ) -> str:
     """Return the units that could speak the selected place, as a list to choose from.
@@ -156,6 +163,8 @@ def options_html(
         Words of a recording.
     pinned : bool
         Whether the place is pinned.
+    tried : bool
+        Whether it is pinned by a swap that was not kept yet.
     at_s : callable
         When a unit begins in its own recording, s.
     """
@@ -164,9 +173,10 @@ def options_html(
         for i, o in enumerate(options.options)
     ]
     n = len(options.options)
+    label, title = _pin_button(pinned, tried)
     buttons = (
         action_button("step", "Swap", "Alt ↓", "1", disabled=n < 2, title="Let the next one speak here")
-        + action_button("pin", "Unpin" if pinned else "Pin", "K", pressed=pinned, title="Keep it here")
+        + action_button("pin", label, "K", pressed=pinned and not tried, title=title)
         + action_button("ban", "Ban", "B", title="Never use this unit")
         + action_button("hear", "Hear", "H", title="Play the fragment in its own recording")
     )

@@ -24,11 +24,15 @@ from workbench.views.theme import palettes, style_sheet
 
 __all__ = ["MeshView"]
 
+ZOOM_LIMITS = (0.2, 2.6)
+"""Our choice, for a camera on a face: nearest a mouth fills the view, farthest a head a third."""
+
 
 class MeshView(pn.custom.JSComponent):
-    """Surfaces, lines and points of a scene; drag turns, shift-drag pans, the wheel comes nearer, R resets.
+    """Surfaces, lines and points of a scene; drag turns, shift-drag pans, the wheel comes nearer.
 
-    A click picks: `picked` says what is under the pointer.
+    A click picks: `picked` says what is under the pointer. 0, R and a double click on the ground reset the
+    camera.
 
     Parameters
     ----------
@@ -49,6 +53,15 @@ class MeshView(pn.custom.JSComponent):
     lights = param.List(default=DEFAULT_LIGHTS)
     revision = param.Integer(default=0, doc="Grows with every new set of actors.")
     camera = param.Dict(default={}, doc="As of scene_actors.camera_of; empty: all actors from the front.")
+    home = param.Dict(default={}, doc="The camera of a reset; empty: the one that was set last from Python.")
+    zoom_limits = param.NumericTuple(
+        default=ZOOM_LIMITS,
+        length=2,
+        doc="How near and how far the wheel goes, as shares of the distance of the camera of a reset.",
+    )
+    wheel_needs_ctrl = param.Boolean(
+        default=False, doc="The wheel zooms with Ctrl only, and scrolls the page without."
+    )
     motion = param.Dict(default={})
     theme = param.Selector(default="light", objects=list(THEMES))
     palettes = param.Dict(default={})

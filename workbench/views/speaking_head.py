@@ -49,9 +49,11 @@ def show_head(head: Head, animation: Animation | None = None, **params: Any) -> 
     animation : Animation, optional
         As of :func:`corpus_tools.pipeline.animate`; without one the head rests.
     **params
-        Of :class:`MeshView`: `session`, the id of the clock that a transport shares; `height`, pixels.
+        Of :class:`MeshView`: `session`, the id of the clock that a transport shares; `height`, pixels;
+        `wheel_needs_ctrl`, True unless given, so that the wheel scrolls the notebook.
     """
-    view = MeshView(**{"height": _HEIGHT_PIXELS, "sizing_mode": "stretch_width", **params})
+    shown = {"height": _HEIGHT_PIXELS, "sizing_mode": "stretch_width", "wheel_needs_ctrl": True}
+    view = MeshView(**{**shown, **params})
     view.show_actors(head_actors(head.mesh, head.binding), camera=head_camera(head.mesh))
     if animation is not None:
         move_head(view, head, animation)

@@ -121,7 +121,15 @@ def _components(c: Any, sizes: Any, size: int) -> dict[str, Any]:
         "MuiInputBase": {"styleOverrides": {"root": {**text}, "input": {"height": "16px"}}},
         "MuiOutlinedInput": {"styleOverrides": {"root": outline, "input": {"padding": "6px 8px"}}},
         "MuiMenuItem": {"styleOverrides": {"root": {**text, "minHeight": "24px", "padding": "2px 10px"}}},
-        "MuiAutocomplete": {"styleOverrides": {"option": {**text}, "inputRoot": {"padding": "0 8px"}}},
+        "MuiAutocomplete": {
+            "styleOverrides": {
+                "option": {**text},
+                "inputRoot": {"padding": "0 8px"},
+                "popupIndicator": {"color": c["ink2"]},
+                "clearIndicator": {"color": c["ink2"]},
+            }
+        },
+        "MuiSelect": {"styleOverrides": {"icon": {"color": c["ink2"]}}},
         "MuiTooltip": {"styleOverrides": {"tooltip": {"whiteSpace": "nowrap", "maxWidth": "none"}}},
         "MuiSlider": {
             "styleOverrides": {

@@ -135,6 +135,10 @@ class BlendBoard(pn.viewable.Viewer):
         """Look at the recording as at the blend."""
         self.inset.mesh_view.camera = dict(event.new)
 
+    def reset_camera(self) -> None:
+        """Look at the head as at first."""
+        self.face.mesh_view.reset_camera()
+
     def _recorded(self, *events: Any) -> None:
         recorded, alone = self._session.recorded, not self._session.cast
         if recorded is not None and alone:

@@ -45,3 +45,10 @@ def test_enter_in_a_text_that_is_refused_does_not_play_another(page):
     page._speak_text()
     wait(lambda: page.session.message)
     assert spoken(page, "the time is now ten") is False
+
+
+def test_a_complaint_of_an_export_goes_when_there_is_something_to_export(page):
+    page.export.submit()
+    assert page.export.kind == "err"
+    assert spoken(page, "the time is now ten") is False
+    assert page.export.kind == ""

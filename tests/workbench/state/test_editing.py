@@ -5,7 +5,7 @@ import pytest
 
 from corpus_tools import synthesis
 from corpus_tools.core import NoUnitError
-from workbench.actions import ban_unit, heard, options_shown, swap_to, swap_unit, toggle_pin, unban
+from workbench.actions import ban_unit, heard, is_tried, options_shown, swap_to, swap_unit, toggle_pin, unban
 from workbench.state import (
     EDITABLE,
     OVERLAPS_S,
@@ -102,6 +102,22 @@ def test_a_pin_holds_its_place_and_comes_off_again(visit):
     assert score(visit.session.result)["fragments"][visit.session.selected]["pinned"]
     unit = visit.session.result.selection.chosen[visit.session.selected].unit
     assert unit.recording == pin.split("=")[1].split(":")[0]
+    toggle_pin(visit.session)
+    assert visit.session.pins == ()
+
+
+def test_what_a_swap_tries_is_kept_by_the_same_key_that_lets_it_go(visit):
+    options = place_with_options(visit)
+    swap_unit(visit.session, 1)
+    visit.run()
+    assert is_tried(visit.session)
+    assert toggle_pin(visit.session)
+    assert visit.session.pins == (options.options[1].pin,)
+    assert not is_tried(visit.session)
+    assert [o.unit for o in options_shown(visit.session).options] == [o.unit for o in options.options]
+    swap_unit(visit.session, 1)
+    assert is_tried(visit.session)
+    toggle_pin(visit.session)
     toggle_pin(visit.session)
     assert visit.session.pins == ()
 

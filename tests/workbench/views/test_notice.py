@@ -73,14 +73,21 @@ def options():
     return Options(tuple(Option(4, 4 + u.last - u.first, u, costs) for u in units))
 
 
+def shown_options(pinned, tried):
+    return options_html(
+        options(), lambda name: f"said in {name}", pinned, tried, lambda unit: 0.1 * unit.first
+    )
+
+
 def test_alternatives_are_rows_that_act_and_escape_what_files_say():
-    made = options_html(options(), lambda name: f"said in {name}", True, lambda unit: 0.1 * unit.first)
+    made = shown_options(True, False)
     assert "<img" not in made
     assert re.findall(r'<td class="num">([\d.]+)</td>', made)[:2] == ["0.00", "0.40"]
     assert re.findall(r'<td class="num">([\d.]+)</td>', made)[-1] == "0.20"
     assert made.count('data-action="swap"') == 2
     assert "2 ph." in made
     assert "Unpin" in made
+    assert ["Keep <" in shown_options(True, tried) for tried in (False, True)] == [False, True]
     assert "<img" not in bans_html((HOSTILE,))
     assert bans_html(()) == ""
 

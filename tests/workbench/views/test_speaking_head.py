@@ -26,6 +26,8 @@ def test_a_head_is_shown_in_one_line_and_moves_as_it_is_told(head):
     spoken, shift = animation(head, 13, 120.0)
     view = show_head(head, spoken, session="cell")
     assert view.session == "cell"
+    assert view.wheel_needs_ctrl  # else the wheel would fly through the face where it should scroll the page
+    assert not show_head(head, wheel_needs_ctrl=False).wheel_needs_ctrl
     assert {a["name"] for a in view.actors} == set(head.mesh.part_names)
     for frames, rate, start in ((13, 120.0, 0.0), (31, 60.0, 0.25), (1, 1.0, 0.0)):
         spoken, shift = animation(head, frames, rate, start)
