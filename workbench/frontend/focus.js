@@ -7,6 +7,8 @@ const MOST_LOOKS = 100;
 const isPicker = (node) => node.getAttribute?.("role") === "combobox";
 const isText = (node) => node.tagName === "INPUT" && ["text", "search"].includes(node.type);
 const isOpen = (node) => node.getAttribute("aria-expanded") === "true";
+/** A picker in which was typed what no row has: there is nothing to choose yet. */
+const findsNone = (node) => isPicker(node) && isOpen(node) && !node.hasAttribute("aria-controls");
 
 function focused() {
   let node = document.activeElement;
@@ -14,7 +16,7 @@ function focused() {
   return node;
 }
 
-/** Esc frees any field; Enter a text, and a picker whose list it has closed. */
+/** Esc frees any field; Enter a text, and a picker that has something to choose. */
 function onKey(event) {
   const field = event.composedPath()[0];
   if (!field?.tagName) return;
@@ -22,7 +24,7 @@ function onKey(event) {
     setTimeout(() => field.blur());
   }
   if (event.key === "Enter" && isText(field)) {
-    setTimeout(() => (isPicker(field) && isOpen(field)) || field.blur());
+    setTimeout(() => findsNone(field) || field.blur());
   }
 }
 
