@@ -1,4 +1,4 @@
-"""The theme of the material controls: what they draw is in the colours of the tokens, in light and in dark."""
+"""The theme of the material controls: what they draw is in the colours of the tokens, in both themes."""
 
 import pytest
 
