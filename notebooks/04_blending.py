@@ -96,10 +96,15 @@ names = {name: {} for name in WEIGHTINGS if name != "user"}
 measured = effect_curves(*narrowed(pieces, corpus.natural), names, overlaps_s, rule="shared-phone")
 mean = pd.DataFrame({c.weighting: np.nanmean(c.ratios, axis=1) for c in measured}, index=overlaps_s)
 hv.Overlay(
-    hv.Curve(
-        (1000 * mean.index, mean[name]), "longest overlap, ms", "mean of the joins ÷ natural p95", label=name
-    )
-    for name in mean
+    [
+        hv.Curve(
+            (1000 * mean.index, mean[name]),
+            "longest overlap, ms",
+            "mean of the joins ÷ natural p95",
+            label=name,
+        )
+        for name in mean
+    ]
 ).opts(hv.opts.Curve(width=760, height=340, tools=["hover"]), hv.opts.Overlay(legend_position="right"))
 
 # %% [markdown]
@@ -132,10 +137,12 @@ times = motions["inertial"].times_s
 join = max(motions["linear, 33 ms"].joins, key=lambda j: j.peak_ratio)
 near = np.abs(times - join.time_s) < 0.2
 hv.Overlay(
-    hv.Curve(
-        (times[near], lip_aperture_mm(m.values_mm, m.names)[near]), "time, s", "lip aperture, mm", label=n
-    )
-    for n, m in motions.items()
+    [
+        hv.Curve(
+            (times[near], lip_aperture_mm(m.values_mm, m.names)[near]), "time, s", "lip aperture, mm", label=n
+        )
+        for n, m in motions.items()
+    ]
 ).opts(
     hv.opts.Curve(width=760, height=280, tools=["hover"]),
     hv.opts.Overlay(legend_position="top", title=f"around {join.phone}, {join.time_s:.2f} s"),

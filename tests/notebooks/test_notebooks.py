@@ -32,6 +32,12 @@ def shown(notebook: nbformat.NotebookNode) -> set[str]:
     }
 
 
+def complaints(notebook: nbformat.NotebookNode) -> list[str]:
+    """Return what cells wrote to stderr: a plot that cannot be drawn is told there, and is no error."""
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    return [output["text"] for output in outputs if output.get("name") == "stderr"]
+
+
 def test_there_are_notebooks() -> None:
     assert NOTEBOOKS
     assert ON_RECORDINGS
@@ -46,13 +52,17 @@ def test_the_last_cell_asserts(path: Path) -> None:
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_it_runs_on_the_simulated_corpus(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SPEECH_CORPORA", raising=False)
-    assert "text/html" in shown(run(path, tmp_path))
+    done = run(path, tmp_path)
+    assert "text/html" in shown(done)
+    assert complaints(done) == []
 
 
 @pytest.mark.parametrize("path", ON_RECORDINGS, ids=lambda path: path.stem)
 def test_it_runs_on_recordings(path: Path, tmp_path: Path, corpora: Path) -> None:
     assert corpora.is_dir()
-    assert "text/html" in shown(run(path, tmp_path))
+    done = run(path, tmp_path)
+    assert "text/html" in shown(done)
+    assert complaints(done) == []
 
 
 def test_a_false_assertion_is_seen(tmp_path: Path) -> None:
