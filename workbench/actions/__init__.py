@@ -7,10 +7,13 @@ from workbench.actions.export import (
     export_stem,
     export_target,
     exports_beside,
+    read_config,
     replay_command,
+    spoken_of,
     suggested_path,
 )
 from workbench.actions.jobs import Cancelled, Gate, Job, LatestJob
+from workbench.actions.journal import Journal, journal_folder
 from workbench.actions.picks import (
     ban_unit,
     heard,
@@ -28,6 +31,7 @@ __all__ = [
     "Desk",
     "Gate",
     "Job",
+    "Journal",
     "LatestJob",
     "ban_unit",
     "export_config",
@@ -37,8 +41,11 @@ __all__ = [
     "heard",
     "inside_root",
     "is_tried",
+    "journal_folder",
     "options_shown",
+    "read_config",
     "replay_command",
+    "spoken_of",
     "suggested_path",
     "swap_to",
     "swap_unit",

@@ -12,7 +12,7 @@ from corpus_tools.core import CorpusError, InputError
 from corpus_tools.pipeline import OpenCorpus, open_corpus
 from workbench.state import default_config
 
-__all__ = ["CorpusCache", "inside_root"]
+__all__ = ["CorpusCache", "inside_root", "opened_by"]
 
 Progress = Callable[[float, str], None]
 
@@ -37,6 +37,12 @@ def inside_root(path: str | Path, root: Path | None) -> Path:
     return resolved
 
 
+def opened_by(config: ConfigBase) -> Hashable:
+    """Return what of a config a corpus is opened by: where it differs, the corpus is opened anew."""
+    parts = (config.cleaning, config.selection.components, config.closure.components)
+    return (config.alignment.rate_hz, repr(parts))
+
+
 def _key(folder: Path, config: ConfigBase) -> Hashable:
     description = folder / "corpus.toml"
     try:
@@ -47,8 +53,7 @@ def _key(folder: Path, config: ConfigBase) -> Hashable:
             "'corpus-tools init FOLDER --motion PATTERN --audio PATTERN --labels PATTERN', "
             "or choose the folder that holds it."
         ) from None
-    parts = (config.cleaning, config.selection.components, config.closure.components)
-    return (str(folder), stat.st_mtime_ns, stat.st_size, config.alignment.rate_hz, repr(parts))
+    return (str(folder), stat.st_mtime_ns, stat.st_size, opened_by(config))
 
 
 class CorpusCache:

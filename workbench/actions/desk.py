@@ -6,10 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from corpus_tools.config import ConfigBase, config_with
 from corpus_tools.core import WorkbenchError
 from corpus_tools.pipeline import OpenCorpus, corpus_provenance
-from workbench.actions.corpora import CorpusCache
-from workbench.actions.export import export_config, export_target, replay_command
+from workbench.actions.corpora import CorpusCache, opened_by
+from workbench.actions.export import export_config, export_target, read_config, replay_command, spoken_of
 from workbench.actions.jobs import Job, LatestJob
 from workbench.state import (
     EDITABLE,
@@ -23,6 +24,17 @@ from workbench.state import (
 )
 
 __all__ = ["Desk"]
+
+
+def _with_opening(config: ConfigBase, other: ConfigBase) -> ConfigBase:
+    """Return a config with what the corpus is opened by taken from another."""
+    return config_with(
+        config,
+        **{f"cleaning__{key}": value for key, value in other.cleaning.model_dump().items()},
+        selection__components=other.selection.components,
+        closure__components=other.closure.components,
+        alignment__rate_hz=other.alignment.rate_hz,
+    )
 
 
 class Desk:
@@ -46,6 +58,8 @@ class Desk:
         self.cache = cache
         self.stages = Stages()
         self._wanted_sentence: str | None = None
+        self.when_opened: Callable[[], None] = lambda: None
+        """Called when a corpus has been opened, before anything of it is shown."""
         self._check_of: OpenCorpus | None = None
         self._opening: LatestJob[OpenCorpus] = LatestJob(
             deliver, self._opened, self._not_opened, self._progress
@@ -136,6 +150,7 @@ class Desk:
         self.session.folder = self.session.folder or str(corpus.description.folder)
         try:
             self.session.opened(corpus, self._wanted_sentence)
+            self.when_opened()
         except WorkbenchError as error:
             self.session.opening_failed(str(error))
 
@@ -261,6 +276,52 @@ class Desk:
 
     def _refused_cast(self, number: int, sentence: str) -> None:
         self.session.param.update(beside=[], message=sentence)
+
+    def take_config(self, config: ConfigBase, name: str) -> None:
+        """Take over a config, and what it says was spoken, as one change; corpus and pins must be there.
+
+        Where it cleans otherwise, the corpus is opened anew first.
+
+        Parameters
+        ----------
+        config : config
+        name : str
+            Of its file, for the history.
+        """
+        session = self.session
+
+        def take() -> None:
+            session.take_config(config, spoken_of(config, session), f"config {name}")
+
+        if opened_by(config) == opened_by(session.config):
+            take()
+            return
+        before = session.values
+        base = _with_opening(session.config, config)
+
+        def again() -> None:
+            self.when_opened = lambda: None
+            session.restore({**before, "base": base})
+            session.begin_history()
+            take()
+
+        session.base, self.when_opened = base, again
+        self.open(session.folder)
+
+    def open_config(
+        self, path: str | Path, done: Callable[[str, str, str], None], beside: Path | None = None
+    ) -> None:
+        """Take over a config file; parameters and what `done` is told as of :meth:`export`."""
+        if self.session.corpus is None:
+            done("err", "Open a corpus first: a config says how it is spoken.", "")
+            return
+        try:
+            config = read_config(path, self.cache.root, beside)
+        except WorkbenchError as error:
+            done("err", str(error), "")
+            return
+        self.take_config(config, Path(str(path).strip()).name)
+        done("opened", "", str(path).strip())
 
     def export(
         self,

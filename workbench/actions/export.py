@@ -22,7 +22,9 @@ __all__ = [
     "export_stem",
     "export_target",
     "exports_beside",
+    "read_config",
     "replay_command",
+    "spoken_of",
     "suggested_path",
 ]
 
@@ -126,6 +128,37 @@ def export_target(path: str | Path, root: Path | None = None, beside: Path | Non
     return target
 
 
+def read_config(path: str | Path, root: Path | None = None, beside: Path | None = None) -> ConfigBase:
+    """Return the config of a file that was typed; parameters as of :func:`export_config`.
+
+    Raises
+    ------
+    InputError, ConfigError
+        There is none, or it is not in order; one sentence says why, as ``corpus-tools config check`` does.
+    """
+    text = str(path).strip()
+    if not text:
+        raise InputError("No file was given; type which config is to be opened.")
+    file = inside_root(text if text.startswith("~") else Path(beside or "") / text, root)
+    if not file.suffix and not file.exists():
+        file = file.with_suffix(".toml")
+    if not file.exists():
+        raise InputError(f"There is no config file '{file}'; type the path of one that was exported.")
+    return load_config(file)
+
+
+def spoken_of(config: ConfigBase, session: Session) -> dict[str, Any]:
+    """Return the editable values of what an exported config says was spoken, as far as the corpus has it."""
+    said = config.provenance
+    text, name, held_out = said.get("text"), said.get("utterance"), said.get("held_out")
+    if isinstance(text, str) and text.strip():
+        return {"target_kind": "text", "text": text.strip()}
+    if not isinstance(name, str) or name not in session.sentences:
+        return {}
+    own = {"held_out": held_out} if isinstance(held_out, bool) else {}
+    return {"target_kind": "recording", "sentence": name, **own}
+
+
 def export_config(
     session: Session,
     path: str | Path,
@@ -159,7 +192,9 @@ def export_config(
     """
     target = export_target(path, root, beside)
     data = session.config.model_dump(by_alias=True, mode="json")
-    data["provenance"] = dict(provenance or {})
+    kind, what = session.target
+    spoken = {"text": what} if kind == "text" else {"utterance": what, "held_out": session.held_out}
+    data["provenance"] = {**(provenance or {}), **(spoken if what else {})}
     config = config_from_dict(data, str(target))
     write_config(target, config)
     return target, config

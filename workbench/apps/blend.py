@@ -9,11 +9,13 @@ from typing import Any
 
 import panel as pn
 
+from corpus_tools.config import ConfigBase
 from corpus_tools.core import counted
 from workbench.actions import (
     CorpusCache,
     Desk,
     Gate,
+    Journal,
     ban_unit,
     export_stem,
     exports_beside,
@@ -22,7 +24,7 @@ from workbench.actions import (
     swap_unit,
     toggle_pin,
 )
-from workbench.state import Session
+from workbench.state import Session, resume
 from workbench.views.bar import AppBar
 from workbench.views.controls import Controls
 from workbench.views.export_box import ExportBox
@@ -72,6 +74,10 @@ class BlendPage:
         Fill the window; False in a notebook cell.
     begin : str
         Dashboard that is shown first.
+    home : str
+        What the server shows at first; a tab that is reloaded goes on where it was at this home.
+    config : (config, name of its file), optional
+        Taken over when the first corpus has been opened.
     """
 
     def __init__(
@@ -82,11 +88,16 @@ class BlendPage:
         deliver: Callable[[Callable[[], None]], None],
         fill: bool = True,
         begin: str = "blend",
+        home: str = "",
+        config: tuple[ConfigBase, str] | None = None,
     ) -> None:
         self._begin, self._make_on_arrival = begin, False
-        self.session = Session()
+        self.session = Session(config[0] if config is not None else None)
         self._gate = Gate(deliver)
         self.desk = Desk(self.session, cache, self._gate)
+        self.journal = Journal(self.session, home, self._gate)
+        if config is not None:
+            self.desk.when_opened = lambda: self._first_config(*config)
         self._make_demo = make_demo
         self._picking = False
         clock = f"page-{next(_clocks)}"
@@ -100,10 +111,15 @@ class BlendPage:
         self._plays_next = False
         self.transport = Transport(session=clock, theme=self.session.theme, margin=0)
         self.board = BlendBoard(self.session, self.controls, clock, self.desk.cancel)
+        self.board.board.on_tab = lambda tab, earlier: self._gate.asked(lambda: self._came(tab, earlier))
         self.desk.after_head = AfterPainted(self.board.face.mesh_view.line, self._gate)
         self.inspector = FragmentInspector(self.session, self._hear)
         self._export_folder = export_folder
-        self.export = ExportBox(self.controls, on_export=self._export)
+        self.export = ExportBox(
+            self.controls,
+            on_export=self._export,
+            on_open=lambda path, done: self.desk.open_config(path, done, self.exports),
+        )
         self.welcome = Welcome(
             self.session,
             self.controls,
@@ -156,6 +172,33 @@ class BlendPage:
         wanted, self._make_on_arrival = self._make_on_arrival, False
         if wanted and self.session.status == "opening":  # not when Esc came first
             self.open_demo()
+
+    def _first_config(self, config: ConfigBase, name: str) -> None:
+        """Begin with the pins and the sentence of a config, by which the corpus was opened."""
+        self.desk.when_opened = lambda: None
+        self.desk.take_config(config, name)
+        self.session.begin_history()
+
+    def _came(self, tab: str, earlier: str) -> None:
+        """Go on where a tab was before it was reloaded."""
+        record = self.journal.begin(tab, earlier)
+        session = self.session
+        if record is None or len(session.history.entries) > 1:
+            self.journal.note()
+            return
+
+        def go_on() -> None:
+            self.desk.when_opened = lambda: None
+            if session.folder == record["folder"]:
+                resume(session, record)
+
+        open_now = session.corpus is not None and session.status == "ready"
+        if open_now and session.folder == record["folder"]:
+            go_on()
+        else:
+            self.desk.when_opened = go_on
+            if not self._make_on_arrival and session.folder != record["folder"]:
+                self.desk.open(record["folder"])
 
     def show(self, dashboard: str) -> None:
         """Show the corpus page or the blend page; without a corpus, open or on its way, only the first."""
@@ -308,3 +351,4 @@ class BlendPage:
     def close(self) -> None:
         """End this tab's work."""
         self.desk.close()
+        self.journal.close()

@@ -24,6 +24,8 @@ _HELP = """The visual speech workbench in the browser.
   workbench                 a simulated starter corpus, made on first use
 
   workbench WORK            a corpus that 'corpus-tools init' made
+
+  workbench WORK --config CONFIG.toml    with the settings, and the sentence, of an export
 """
 
 app = typer.Typer(help=_HELP, rich_markup_mode=None, add_completion=False, pretty_exceptions_enable=False)
@@ -42,6 +44,9 @@ class _Command(OneSentence, TyperCommand):
 def workbench(
     corpus: Annotated[
         Path | None, typer.Argument(**PATH, help="Corpus folder; the simulated starter corpus when left out.")
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option("--config", **PATH, help="Config to begin with, as the page exports it.")
     ] = None,
     app_name: Annotated[
         str, typer.Option("--app", help=f"Dashboard to begin with: {', '.join(APPS)}.")
@@ -81,6 +86,7 @@ def workbench(
             root,
             not no_browser,
             app=app_name,
+            config=config,
         )
         check_options(options)
         if check:

@@ -14,6 +14,7 @@ from typing import Any
 
 import panel as pn
 
+from corpus_tools.config import load_config
 from corpus_tools.core import InputError
 from corpus_tools.demo import demo_folder
 from corpus_tools.pipeline.kept import cache_folder
@@ -50,6 +51,8 @@ class Options:
         Open the simulated starter corpus when no corpus is given; never with a `root`, which it lies outside.
     app : str
         Dashboard to begin with.
+    config : path or None
+        Config that is taken over when the first corpus has been opened.
     """
 
     corpus: Path | None = None
@@ -61,6 +64,7 @@ class Options:
     browser: bool = True
     demo: bool = True
     app: str = "blend"
+    config: Path | None = None
 
 
 def read_password(path: Path) -> str:
@@ -114,6 +118,8 @@ def check_options(options: Options) -> None:
         )
     if options.password_file is not None:
         read_password(options.password_file)
+    if options.config is not None:
+        load_config(options.config)
     _check_port(options.host, options.port)
 
 
@@ -153,6 +159,7 @@ class Workbench:
     def __init__(self, options: Options) -> None:
         self.options = options
         self.cache = CorpusCache(options.root)
+        self._config = (load_config(options.config), options.config.name) if options.config else None
         self.pages: list[BlendPage] = []
         self._demo_lock = threading.Lock()
 
@@ -181,6 +188,8 @@ class Workbench:
             self.options.root / "exports" if self.options.root else None,
             deliver if doc is not None else _at_once,
             begin=self.options.app,
+            home=str([str(p.absolute()) if p else "" for p in (self.options.corpus, self.options.config)]),
+            config=self._config,
         )
         self.pages.append(made)
         if doc is not None:

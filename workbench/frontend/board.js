@@ -1,6 +1,7 @@
 /**
  * The work area of the blend page: face, g(u) and lane as cards that keep their places.
  */
+import { tabId } from "./tab.js";
 
 const SAID_AFTER_MS = 1000;
 
@@ -242,5 +243,6 @@ export function renderBoard({ model, el }) {
   for (const name of ["head_text", "lane_text", "held_out_text", "message", "warning", "stale", "shown", "unused"]) model.on(name, draw);
   draw();
   root.append(face.card, curve.card, lane.card);
+  tabId().then((found) => found && model.send_msg({ type: "tab", ...found }));
   return root;
 }

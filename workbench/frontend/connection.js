@@ -3,7 +3,7 @@
  */
 
 const TOLD =
-  "Connection lost – the server stopped or the network is down; reload when it is back. Nothing you change here is kept until then.";
+  "Connection lost – the server stopped or the network is down; reload when it is back: what you did before is kept, what you change until then is not.";
 
 /**
  * Build the band and let it follow the connection of a document.

@@ -4,6 +4,7 @@ from workbench.state.corpus_facts import CorpusFacts, RecordingRow, corpus_facts
 from workbench.state.editing import EDITABLE, SETTINGS, TARGETS, default_config
 from workbench.state.effects import OVERLAPS_S, Effects, compute_effects, effect_data, signal_band
 from workbench.state.history import Entry, History, change_text
+from workbench.state.journal import JOURNAL, resume, session_record
 from workbench.state.keys import KeyBinding, key_label, key_table
 from workbench.state.lane_data import (
     FragmentDetails,
@@ -26,6 +27,7 @@ from workbench.state.trajectory_data import signal_data
 
 __all__ = [
     "EDITABLE",
+    "JOURNAL",
     "OVERLAPS_S",
     "SETTINGS",
     "SIGNALS",
@@ -69,7 +71,9 @@ __all__ = [
     "pin_at",
     "read_tokens",
     "recording_rows",
+    "resume",
     "score",
+    "session_record",
     "signal_band",
     "signal_data",
     "signals_of",

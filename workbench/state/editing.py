@@ -35,7 +35,7 @@ TARGETS = ("recording", "text")
 """What can be spoken: the sentence of a recording, or words that were typed."""
 
 _TARGET = ("target_kind", "sentence", "text")
-EDITABLE = (*SETTINGS, *_TARGET, "held_out")
+EDITABLE = (*SETTINGS, *_TARGET, "held_out", "base")
 """Parameters that a person edits: what the history holds, and what undo brings back."""
 
 
@@ -75,6 +75,7 @@ class Editing(param.Parameterized):
     deformer = param.String(default="bid")
     pins = param.ClassSelector(class_=tuple, default=(), doc="Units that must speak target phones.")
     bans = param.ClassSelector(class_=tuple, default=(), doc="Units and recordings that must not be used.")
+    base = param.ClassSelector(class_=ConfigBase, doc="Config of the values that have no parameter here.")
     options = param.ClassSelector(class_=Options, allow_None=True, default=None, doc="Of the place.")
 
     edits = param.Integer(default=0, doc="Grows with every change of the history.")
@@ -82,12 +83,12 @@ class Editing(param.Parameterized):
     side = param.Selector(default="B", objects=["A", "B"], doc="Which of the two is shown.")
 
     def __init__(self, base: ConfigBase | None = None, **values: Any) -> None:
-        self._base = base or default_config()
+        base = base or default_config()
         self._restoring = False
         self._pins_of: dict[tuple[str, str], tuple[str, ...]] = {}
         self._aside: dict[str, Any] = {}
         self.history = History()
-        super().__init__(**{**self._from_config(self._base), **values})
+        super().__init__(**{**self._from_config(base), **values, "base": base})
         self._spoken = self.target
         self.param.watch(self._edited, list(EDITABLE))
 
@@ -108,12 +109,28 @@ class Editing(param.Parameterized):
         ConfigError
             A value is out of range.
         """
-        return config_with(self._base, **{place: getattr(self, n) for n, place in SETTINGS.items()})
+        return config_with(self.base, **{place: getattr(self, n) for n, place in SETTINGS.items()})
 
     def load_config(self, config: ConfigBase) -> None:
         """Take over every value of a config, also those that have no parameter here."""
-        self._base = config
-        self.param.update(**self._from_config(config))
+        self.param.update(**self._from_config(config), base=config)
+
+    def take_config(self, config: ConfigBase, spoken: Mapping[str, Any], what: str) -> None:
+        """Take over a config as one change that can be undone.
+
+        Parameters
+        ----------
+        config : config
+        spoken : mapping
+            `target_kind`, `sentence`, `text`, `held_out`, as far as they are to be others.
+        what : str
+            The change in words, for the history.
+        """
+        self.side = "B"
+        self._pins_of[self._spoken] = self.pins
+        self.restore({**self._from_config(config), "base": config, **spoken})
+        self.history.record(self.values, time.time(), what)
+        self.edits += 1
 
     @property
     def target(self) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -133,6 +133,15 @@ class History:
         self._next = 0
         self._at: int | None = None
         self._entries: dict[int, Entry] = {}
+
+    @classmethod
+    def of(cls, entries: Iterable[Entry], at: int) -> History:
+        """Return a history that holds entries and stands on number `at`; KeyError without it."""
+        made = cls()
+        made._entries = {e.number: e for e in entries}
+        made._at = made._entries[at].number
+        made._next = max(made._entries) + 1
+        return made
 
     @property
     def entries(self) -> tuple[Entry, ...]:

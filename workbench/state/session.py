@@ -102,7 +102,7 @@ class Session(Editing):
         if now is None or not self.difference:
             return None
         values = self.other_settings
-        return replace(now, config=config_with(self._base, **{SETTINGS[n]: v for n, v in values.items()}))
+        return replace(now, config=config_with(self.base, **{SETTINGS[n]: v for n, v in values.items()}))
 
     def begin_opening(self, folder: str) -> None:
         """Show that a corpus is being read; what is open stays until the new one is there."""

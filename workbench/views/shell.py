@@ -93,6 +93,12 @@ class Board(pn.custom.JSComponent):
     ----------
     on_action : callable, optional
         ``on_action(id)`` of a button in a card.
+
+    Attributes
+    ----------
+    on_tab : callable
+        ``on_tab(id, earlier)`` once the browser has said which tab this is: its id outlives a reload;
+        `earlier` is that of the tab it was copied from, if it was.
     """
 
     face = pn.custom.Child()
@@ -132,8 +138,11 @@ class Board(pn.custom.JSComponent):
 
     def __init__(self, on_action: Callable[[str], None] | None = None, **params: Any) -> None:
         self._on_action = on_action
+        self.on_tab: Callable[[str, str], None] = lambda tab, earlier: None
         super().__init__(**{"sizing_mode": "stretch_both", **params})
 
     def _handle_msg(self, data: Any) -> None:
+        if data.get("type") == "tab":
+            self.on_tab(str(data.get("id", "")), str(data.get("earlier", "")))
         if data.get("type") == "action" and self._on_action is not None:
             self._on_action(str(data["id"]))

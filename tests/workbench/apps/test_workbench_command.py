@@ -34,6 +34,7 @@ def workbench(*arguments):
         (("--root", "/no/such/folder"), "--root"),
         (("--port", "22x"), "--port"),
         (("--password-file", "/no/such/file"), "/no/such/file"),
+        (("--config", "/no/such/config.toml"), "/no/such/config.toml"),
     ],
 )
 def test_a_mistake_is_one_sentence_and_exit_2(arguments, word):
