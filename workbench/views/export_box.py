@@ -87,7 +87,7 @@ class ExportBox(pn.viewable.Viewer):
             controls,
             "Open",
             margin=(12, 12, 4, 0),
-            description="Open the config of this file: undo takes it back",
+            description="Open the config of this file",
         )
         self.open.on_click(lambda _: self.submit_open())
         self._said = ActionHtml(on_action=lambda action, value: self.show("", ""))
