@@ -5,10 +5,10 @@ import time
 import numpy as np
 import pytest
 
-from corpus_tools.config import config_with, load_config
+from corpus_tools.config import load_config
 from corpus_tools.core import ConfigError, InputError
 from corpus_tools.synthesis import curve_through
-from workbench.actions import CorpusCache, Desk, export_config
+from workbench.actions import export_config
 from workbench.state import SETTINGS, Session, Stages, aperture_curves, fragment_details, joins_data, score
 from workbench.views.controls import Controls
 from workbench.views.export_box import ExportBox
@@ -199,37 +199,6 @@ def test_exported_config_equals_the_session(session, tmp_path):
     assert (other.weighting, other.shape, other.overlap_s) == ("raised-cosine", -0.4, 0.075)
 
 
-class Now:
-    """Runs what is delivered when asked, as a page's loop would."""
-
-    def __init__(self):
-        import queue
-
-        self.queue = queue.Queue()
-
-    def __call__(self, action):
-        self.queue.put(action)
-
-    def until(self, condition, timeout_s=60):
-        while not condition():
-            self.queue.get(timeout=timeout_s)()
-
-
-@pytest.fixture
-def desk_of(corpus_folder):
-    cache, made = CorpusCache(), []
-
-    def make():
-        loop = Now()
-        desk = Desk(Session(), cache, loop)
-        made.append(desk)
-        return desk, loop
-
-    yield make
-    for desk in made:
-        desk.close()
-
-
 def test_a_visit_from_opening_to_a_new_curve(desk_of, corpus_folder):
     desk, loop = desk_of()
     session, seen = desk.session, []
@@ -365,56 +334,6 @@ def test_a_config_that_is_there_is_replaced_when_asked_again(desk_of, corpus_fol
     assert press() != first
     desk.session.overlap_s = 0.06
     press(expected="there")  # and anew
-
-
-def test_an_export_is_opened_again_with_its_sentence_as_one_change(desk_of, corpus_folder, tmp_path):
-    desk, loop = desk_of()
-    session, said = desk.session, []
-    desk.open(corpus_folder)
-    loop.until(lambda: session.result is not None and not session.working)
-    first = session.values
-    session.sentence = session.sentences[5]
-    session.param.update(weighting="septic", bans=("time03",), held_out=False)
-    wanted = session.values
-    path, _ = export_config(session, tmp_path / "mine.toml")
-    session.go_to(0)
-    desk.open_config("mine", lambda *told: said.append(told), tmp_path)
-    assert said[-1][0] == "opened"
-    assert {**session.values, "base": None} == {**wanted, "base": None}
-    assert session.undo()
-    assert session.values == first
-    session.param.update(target_kind="text", text="the time is two")
-    export_config(session, tmp_path / "text.toml")
-    session.go_to(0)
-    desk.open_config(tmp_path / "text.toml", lambda *told: said.append(told))
-    assert session.target == ("text", "the time is two")
-    loop.until(lambda: not session.working)
-    before = session.values
-    path.write_text(path.read_text().replace("septic", "septik").replace("[blend]", "[blend]\nshap = 1"))
-    for bad, words in (
-        (path, "did you mean 'shape'"),
-        (tmp_path / "no.toml", "no config file"),
-        ("", "type which"),
-    ):
-        desk.open_config(bad, lambda *told: said.append(told), tmp_path)
-        assert said[-1][0] == "err"
-        assert words in said[-1][1]
-    assert session.values == before
-
-
-def test_a_config_that_cleans_otherwise_opens_the_corpus_anew(desk_of, corpus_folder, tmp_path):
-    desk, loop = desk_of()
-    session = desk.session
-    desk.open(corpus_folder)
-    loop.until(lambda: session.result is not None and not session.working)
-    was, first = session.corpus, session.values
-    desk.take_config(config_with(session.config, cleaning__cutoff_hz=9.0, blend__weighting="bump"), "a.toml")
-    loop.until(lambda: session.corpus is not was and session.result is not None and not session.working)
-    assert session.config.cleaning.cutoff_hz == 9.0
-    assert session.weighting == "bump"
-    assert session.undo()
-    assert session.config.cleaning.cutoff_hz == 9.0  # by which the corpus is open
-    assert {**session.values, "base": None} == {**first, "base": None}
 
 
 def test_a_value_out_of_range_is_refused_by_the_config(session, tmp_path):
