@@ -27,6 +27,7 @@ from corpus_tools.pipeline import (
     open_corpus,
     prepare_head,
     remove_stale,
+    sound_problem,
     speech_facts,
     synthesise,
     write_synthesis,
@@ -103,6 +104,7 @@ def _summary(
         "out": str(out),
         "utterance": synthesis.utterance.name,
         "speech": speech_facts(synthesis.utterance),
+        "sound_problem": sound_problem(synthesis.utterance),
         "frames": len(synthesis.trajectory.times_s),
         "fragments": [c.unit.key for c in synthesis.selection.chosen],
         "joins": synthesis.selection.n_joins,
@@ -142,6 +144,8 @@ def _tell(
         say(f"Removed what an earlier result left in {summary['out']}: {_few(summary['removed'])}.")
     if summary["speech"]["silent"]:
         say("▲ There is no sound: speech.wav is silence; --audio FILE.wav gives the sound of the labels.")
+    if summary["sound_problem"]:
+        say(f"▲ {summary['sound_problem']}")
     if opened.skipped:
         say(_left_out(opened))
 

@@ -21,6 +21,7 @@ from corpus_tools.pipeline.source import CorpusSource
 from corpus_tools.pipeline.speaking import (
     check_speech,
     corpus_vocabulary,
+    sound_problem,
     speak_for,
     speech_facts,
     speech_language,
@@ -67,6 +68,7 @@ __all__ = [
     "reference_columns",
     "remove_stale",
     "select_units",
+    "sound_problem",
     "speak_for",
     "speech_facts",
     "speech_language",

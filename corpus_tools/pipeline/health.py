@@ -24,7 +24,13 @@ from corpus_tools.io import (
 )
 from corpus_tools.pipeline.lacking import axes_advice, offset_advice, what_is_lacking, what_is_left_out
 from corpus_tools.pipeline.reading import Progress, reference_columns, silent
-from corpus_tools.pipeline.usable import in_order_of, motion_problem, seen_markers, usual_markers
+from corpus_tools.pipeline.usable import (
+    frozen_problem,
+    in_order_of,
+    motion_problem,
+    seen_markers,
+    usual_markers,
+)
 from corpus_tools.speech import PhoneSet, closure_offset, phone_set, recorded_utterance
 
 __all__ = ["check_corpus", "health_lines"]
@@ -71,15 +77,14 @@ def _read(description: CorpusDescription, item: RecordingFiles, phones: PhoneSet
         return entry
     try:
         entry.labels = load_labels(description, item)
-        audio = entry.capture.audio
         entry.utterance = recorded_utterance(
             item.id,
             entry.labels,
-            audio,
+            entry.capture.audio,
             phones,
             phone_tier=description.phone_tier,
             word_tier=description.word_tier,
-            duration_s=audio.duration_s if audio else entry.capture.times_s[-1],
+            duration_s=entry.capture.times_s[-1],
         )
     except WorkbenchError as error:
         entry.problems.append(str(error))
@@ -113,6 +118,14 @@ def _check_gaps(entry: _Entry) -> None:
     if 0 < len(never) < len(entry.capture.names) - regions.count("head"):
         more = f" and {counted(len(never) - 6, 'more marker')}" if len(never) > 6 else ""
         entry.problems.append(f"no frame shows {', '.join(never[:6])}{more}.")
+
+
+def _check_frozen(entry: _Entry) -> None:
+    """Name motion that stands still where no labels say when somebody speaks (else `_usable` does)."""
+    if entry.capture is None or entry.utterance is not None:
+        return
+    if problem := frozen_problem(entry.capture, 0.0, np.inf):
+        entry.problems.append(problem)
 
 
 def _check_alike(entries: Sequence[_Entry]) -> None:
@@ -246,6 +259,7 @@ def check_corpus(folder: str | Path, progress: Progress = silent) -> dict[str, A
         entries.append(_read(description, item, phones))
     for entry in entries:
         _check_lengths(entry)
+        _check_frozen(entry)
         _check_gaps(entry)
     _check_alike(entries)
     progress(0.75, "head motion and lip closures")

@@ -114,7 +114,7 @@ def _load(
                 phones,
                 phone_tier=description.phone_tier,
                 word_tier=description.word_tier,
-                duration_s=capture.audio.duration_s if capture.audio else capture.times_s[-1],
+                duration_s=capture.times_s[-1],
             )
         except WorkbenchError as error:
             skipped[item.id] = str(error)

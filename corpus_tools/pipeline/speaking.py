@@ -10,10 +10,19 @@ from corpus_tools.core import InputError, Utterance
 from corpus_tools.pipeline.opened import OpenCorpus
 from corpus_tools.speech import ENGINES, check_text, prepare_espeak, speak_text
 
-__all__ = ["check_speech", "corpus_vocabulary", "speak_for", "speech_facts", "speech_language"]
+__all__ = [
+    "check_speech",
+    "corpus_vocabulary",
+    "sound_problem",
+    "speak_for",
+    "speech_facts",
+    "speech_language",
+]
 
 _VARIANT = re.compile(r"\(\d+\)$")
 _SHOWN = 40
+UNEQUAL_S = 0.5
+"""By how much sound and speech may differ in length unsaid (our choice: as labels and sound may)."""
 
 
 def check_speech(text: str, config: ConfigBase) -> None:
@@ -73,6 +82,16 @@ def speak_for(corpus: OpenCorpus, text: str, config: ConfigBase) -> Utterance:
         rate=config.speech.rate,
         vocabulary=corpus_vocabulary(corpus),
         name=shown if len(shown) <= _SHOWN else shown[: _SHOWN - 1] + "…",
+    )
+
+
+def sound_problem(utterance: Utterance) -> str:
+    """Return a sentence on sound that is not as long as what is spoken with it; empty when it fits."""
+    if utterance.audio is None or abs(utterance.audio.duration_s - utterance.duration_s) <= UNEQUAL_S:
+        return ""
+    return (
+        f"The sound lasts {utterance.audio.duration_s:.2f} s and what is spoken to it "
+        f"{utterance.duration_s:.2f} s: check that they belong together."
     )
 
 

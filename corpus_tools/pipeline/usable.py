@@ -14,6 +14,7 @@ __all__ = [
     "COVER_TOLERANCE_S",
     "LEAST_RATE_HZ",
     "chosen_markers",
+    "frozen_problem",
     "in_order_of",
     "motion_problem",
     "seen_markers",
@@ -22,6 +23,9 @@ __all__ = [
 
 LEAST_RATE_HZ = 10.0
 """Slower motion, captured or synthesised, has no frame of its own for a phone (our choice)."""
+
+FROZEN_S = 1.0
+"""Longest stretch of speech in which no marker moves at all (our choice: no pause is still)."""
 
 COVER_TOLERANCE_S = 0.1
 """How far speech may reach beyond the motion, s: the nearest pose is held there (our choice: one phone)."""
@@ -67,6 +71,42 @@ def _spread_out(points: FloatArray, seen: BoolArray) -> BoolArray:
     return np.asarray((count >= 3) & (spread[:, 1] > 1e-3 * spread[:, 0]))
 
 
+def frozen_problem(capture: Capture, low_s: float, high_s: float) -> str | None:
+    """Return a sentence when motion between two times stands still to the last digit, or None.
+
+    Nothing that is measured does: frames that are equal in every marker for longer than :data:`FROZEN_S`, or
+    all frames of a recording, are one frame written again and again.
+
+    Parameters
+    ----------
+    capture : Capture
+    low_s, high_s : float
+        Only frames between them count, s.
+    """
+    times, points = capture.times_s, np.asarray(capture.positions_mm)
+    seen = np.isfinite(points).all(axis=2)
+    both = seen[1:] & seen[:-1]
+    equal = ((points[1:] == points[:-1]).all(axis=2) | ~both).all(axis=1) & both.any(axis=1)
+    if len(equal) and equal.all():
+        first, last = 0, len(equal)
+    else:
+        first, last = _longest(equal & (times[:-1] >= low_s) & (times[1:] <= high_s))
+        if last - first <= FROZEN_S * capture.rate_hz:
+            return None
+    return (
+        f"its motion stands still to the last digit from {times[first]:.3f} to {times[last]:.3f} s, which "
+        "no capture does; export it again, or leave the recording out."
+    )
+
+
+def _longest(true: BoolArray) -> tuple[int, int]:
+    """Return where the longest stretch of true values begins and ends; (0, 0) when there is none."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], true.astype(np.int8), [0]])))
+    starts, stops = edges[::2], edges[1::2]
+    at = int(np.argmax(stops - starts)) if len(starts) else 0
+    return (int(starts[at]), int(stops[at])) if len(starts) else (0, 0)
+
+
 def motion_problem(
     capture: Capture, utterance: Utterance, columns: Sequence[int], silence: str
 ) -> str | None:
@@ -97,4 +137,4 @@ def motion_problem(
             f"its motion runs from {times[0]:.3f} to {times[-1]:.3f} s but its labels speak from {low:.3f} "
             f"to {high:.3f} s; check the frame rate and audio_offset_s, or give the whole recording."
         )
-    return None
+    return frozen_problem(capture, low, high)

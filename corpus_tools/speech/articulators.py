@@ -30,6 +30,8 @@ APERTURE_PAIRS = (("lip_in1", "lip_in7"), ("lip_in2", "lip_in6"), ("lip_in3", "l
 """Upper and lower inner-lip markers that face each other."""
 
 _OUTER_PAIRS = (("lip_out2", "lip_out10"), ("lip_out3", "lip_out9"), ("lip_out4", "lip_out8"))
+STILL_MM = 0.01
+"""Lips whose mean aperture changes by less around bilabials do not move (our choice: below noise)."""
 CLOSURE_WINDOW_S = 0.04
 """Margin around a bilabial in which its closure is looked for, s (the error of automatic labels)."""
 
@@ -180,7 +182,8 @@ def closure_offset(
 
     The mean aperture at the centres of all bilabials is taken for shifts of the motion from -`reach_s` to
     +`reach_s`; the shift of the least mean is returned, refined by a parabola. None when there are fewer than
-    5 bilabials. Positive: the motion comes too early; add the value to ``audio_offset_s``.
+    5 bilabials, when the lips do not move, or when they close nowhere within reach: no minimum lies inside.
+    Positive: the motion comes too early; add the value to ``audio_offset_s``.
     """
     shifts = np.arange(-reach_s, reach_s + step_s / 2, step_s)
     rows = []
@@ -201,9 +204,8 @@ def closure_offset(
         return None
     mean = np.mean(rows, axis=0)
     k = int(np.argmin(mean))
-    if 0 < k < len(mean) - 1:
-        left, middle, right = mean[k - 1 : k + 2]
-        bend = left - 2 * middle + right
-        if bend > 0:
-            return float(shifts[k] + 0.5 * step_s * (left - right) / bend)
-    return float(shifts[k])
+    if np.ptp(mean) < STILL_MM or not 0 < k < len(mean) - 1:
+        return None
+    left, middle, right = mean[k - 1 : k + 2]
+    bend = left - 2 * middle + right
+    return float(shifts[k] + (0.5 * step_s * (left - right) / bend if bend > 0 else 0.0))

@@ -24,6 +24,15 @@ LONGEST_S = 3600.0
 """No target lasts an hour (our choice): such labels are in another unit than seconds, or damaged."""
 
 
+LONGER_S = 1.0
+"""Sound that goes on for longer than this after all that is known of it is not waited for (our choice: a head
+that rests for the rest of another recording is of no use)."""
+
+
+def _sounding_s(audio: Audio, known_s: float) -> float:
+    return audio.duration_s if audio.duration_s <= known_s + LONGER_S else known_s
+
+
 def _normalised(tier: Tier, phones: PhoneSet, source: str) -> list[Interval]:
     rows = []
     for interval in tier:
@@ -157,9 +166,12 @@ def recorded_utterance(
     phone_tier, word_tier : str
         Which tiers hold phones and words; words may be missing.
     duration_s : float
-        Length when there is no audio, s.
+        Length of the motion, s: that of the utterance when there is no audio, or when the audio goes on for
+        more than :data:`LONGER_S` after motion and labels.
     """
-    length = duration_s if duration_s is not None else audio.duration_s if audio else labels.end_s
+    length = labels.end_s if duration_s is None else duration_s
+    if audio:
+        length = _sounding_s(audio, max(length, labels.end_s))
     return _utterance(name, labels, audio, phones, phone_tier, word_tier, length, f"'{name}'", "recorded")
 
 
@@ -183,7 +195,7 @@ def labelled_utterance(
         The tier is missing, a phone is outside the set, or labels and audio do not belong together.
     """
     where = f"'{source or name}'"
-    length = audio.duration_s if audio else labels.end_s
+    length = _sounding_s(audio, labels.end_s) if audio else labels.end_s
     if labels.end_s > LONGEST_S:
         raise LabelError(
             f"{where} goes on to {labels.end_s:g} s; at most {LONGEST_S:g} s can be spoken: check that its "

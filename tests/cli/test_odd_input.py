@@ -13,9 +13,9 @@ import time
 import numpy as np
 import pytest
 
-from corpus_tools.core import MeshError, OutputError, atomic_folder
+from corpus_tools.core import Audio, MeshError, OutputError, atomic_folder
 from corpus_tools.core.files import _move_all
-from corpus_tools.io import find_recordings, read_description
+from corpus_tools.io import find_recordings, read_description, read_labels, write_wav
 from corpus_tools.mesh import bundled_head, write_mesh
 from tests.cli.answers import START, last_json, refused
 
@@ -136,6 +136,20 @@ def test_one_damaged_recording_is_left_out_and_named(tool, corpus, tmp_path):
         row = next(r for r in last_json(out)["recordings"] if r["id"] == first.id)
         assert code == 0
         assert row["problems"]
+
+
+@pytest.mark.parametrize("length_s", [0.01, 60.0])
+def test_sound_of_another_recording_is_told_and_lengthens_no_motion(tool, corpus, tmp_path, length_s):
+    first = files_of(corpus)[0]
+    write_wav(first.audio, Audio(np.zeros(round(16000 * length_s), np.float32), 16000))
+    end_s = read_labels(first.labels).end_s
+    code, out, err = tool("synth", corpus, "--utterance", first.id, "--out", tmp_path / "o", "--json")
+    assert (code, err) == (0, "")
+    sentence = next(line for line in out.splitlines() if line.startswith("▲ The sound lasts"))
+    assert f"{length_s:.2f} s" in sentence
+    assert last_json(out)["sound_problem"] in sentence
+    with np.load(tmp_path / "o/motion.npz") as made:
+        assert abs(made["times_s"][-1] - end_s) < 0.3
 
 
 def test_a_missing_unit_says_that_recordings_were_left_out(tool, corpus, tmp_path):

@@ -145,6 +145,17 @@ def test_the_asked_offset_mends_the_corpus():
     assert closure_offset([mended], [utterance], PHONES) == pytest.approx(0.0, abs=0.0005)
 
 
+def test_lips_that_do_not_move_or_close_out_of_reach_say_nothing():
+    capture, utterance = speaking(CENTRES)
+    still = np.repeat(capture.positions_mm[:1], capture.n_frames, axis=0)
+    for share in (0.0, 1e-4):
+        barely = still + share * (capture.positions_mm - still)
+        assert closure_offset([Capture(barely, 100.0, NAMES)], [utterance], PHONES) is None
+    for early_s in (-0.13, 0.13):
+        capture, utterance = speaking(CENTRES, early_s)
+        assert closure_offset([capture], [utterance], PHONES) is None
+
+
 def test_too_few_closures_say_nothing():
     capture, utterance = speaking(CENTRES[:4])
     assert closure_offset([capture], [utterance], PHONES) is None

@@ -138,6 +138,21 @@ def test_without_sound_the_motion_gives_the_length():
     assert recorded_utterance("a", LABELS, None, PHONES).duration_s == 1.0
 
 
+@given(beyond_s=st.floats(-0.4, 60), motion_s=st.floats(0.5, 3))
+def test_sound_gives_the_length_unless_it_goes_on_for_long_after_everything(beyond_s, motion_s):
+    known_s = max(1.0, motion_s)
+    for known, made in (
+        (known_s, lambda sound: recorded_utterance("a", LABELS, sound, PHONES, duration_s=motion_s)),
+        (1.0, lambda sound: labelled_utterance("a", LABELS, sound, PHONES)),
+    ):
+        sound = Audio(np.zeros(round(16000 * (known + beyond_s)), np.float32), 16000)
+        length_s = max(sound.duration_s, 1.0)  # what is labelled is spoken whatever the sound
+        if sound.duration_s > known + 1.0:
+            length_s = known
+        assert made(sound).duration_s == pytest.approx(length_s)
+        assert made(sound).audio is sound
+
+
 def test_tiers_by_other_names_and_no_words():
     labels = Labels((tier(*rows(LABELS.tier("phones")), name="phon"),), 0.0, 1.0)
     made = recorded_utterance("a", labels, TONE, PHONES, phone_tier="phon")
