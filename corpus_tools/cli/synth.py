@@ -14,7 +14,7 @@ from corpus_tools.cli.contact_facts import contact_facts, contact_line
 from corpus_tools.cli.join_facts import join_facts, join_line
 from corpus_tools.cli.targets import SpeakRequest
 from corpus_tools.config import Config, ConfigBase, config_with, load_config
-from corpus_tools.core import NoUnitError, SynthesisError, Utterance, counted
+from corpus_tools.core import InputError, NoUnitError, SynthesisError, Utterance, counted
 from corpus_tools.mesh import mesh_by_name_or_file
 from corpus_tools.methods import SEARCHES
 from corpus_tools.pipeline import (
@@ -215,6 +215,8 @@ def synth(
     settings = _config(config, spoken | other)
     asked.check(settings)
     exports = export_names(export)
+    if film_fps is not None and not {"mp4", "frames"} & set(exports):
+        raise InputError("--film-fps goes with --export mp4 or frames; --fps is the rate of the motion.")
     check_out_folder(out, corpus)
     check_exports(exports, out)
     head_mesh = mesh_by_name_or_file(settings.deform.mesh)

@@ -10,14 +10,14 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from corpus_tools.core.errors import OutputError
+from corpus_tools.core.errors import OutputError, WorkbenchError
 
 try:
     import fcntl
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["atomic_file", "atomic_folder", "check_writable"]
+__all__ = ["atomic_file", "atomic_folder", "called", "check_writable"]
 
 
 _FULL = {
@@ -76,6 +76,18 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
+def called(hidden: Path, place: Path) -> Iterator[None]:
+    """Let sentences about files in a temporary folder name the place that the user gave."""
+    try:
+        yield
+    except WorkbenchError as error:
+        error.args = tuple(
+            a.replace(str(hidden), str(place)) if isinstance(a, str) else a for a in error.args
+        )
+        raise
+
+
+@contextlib.contextmanager
 def atomic_folder(
     path: str | os.PathLike[str], replaceable: Callable[[Path], bool] = lambda folder: False
 ) -> Iterator[Path]:
@@ -93,7 +105,8 @@ def atomic_folder(
     except OSError as error:
         raise _refusal(target, error) from error
     try:
-        yield temporary
+        with called(temporary, target):
+            yield temporary
         with _alone(target.parent):
             _move_all(temporary, target, replaceable)
     except OSError as error:

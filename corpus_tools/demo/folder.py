@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 from corpus_tools.core import WorkbenchError
+from corpus_tools.core.files import called
 from corpus_tools.demo.corpus import N_SENTENCES, README, Progress, corpus_stamp, simulate_corpus
 from corpus_tools.demo.voices import usual_voice
 from corpus_tools.io import find_recordings, read_description
@@ -49,7 +50,8 @@ def demo_folder(folder: str | Path, progress: Progress | None = None) -> Path:
     fresh = place.with_name(f".{place.name}.{os.getpid()}.new")
     old = place.with_name(f".{place.name}.{os.getpid()}.old")
     try:
-        simulate_corpus(fresh, progress=progress)
+        with called(fresh, place):
+            simulate_corpus(fresh, progress=progress)
         if not _is_whole(place):
             if place.exists():
                 place.replace(old)

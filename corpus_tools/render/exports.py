@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from corpus_tools.config import ConfigBase
-from corpus_tools.core import MissingExtraError, OutputError, Registry
+from corpus_tools.core import InputError, MissingExtraError, OutputError, Registry
 from corpus_tools.io import MOTION_WRITERS
 from corpus_tools.pipeline import Head, Progress, Synthesis
 from corpus_tools.render.encoder import ffmpeg_path
@@ -107,9 +107,13 @@ def export_names(given: str | None) -> tuple[str, ...]:
     Raises
     ------
     InputError
-        One of them is unknown; the sentence lists those that are there.
+        One of them is unknown, or there is none; the sentence lists those that are there.
     """
-    names = [n.strip() for n in (given or "").split(",") if n.strip()]
+    if given is None:
+        return ()
+    names = [n.strip() for n in given.split(",") if n.strip()]
+    if not names:
+        raise InputError(f"--export '{given}' names nothing; known, by comma: {', '.join(EXPORTERS)}.")
     for name in names:
         EXPORTERS[name]
     return tuple(dict.fromkeys(names))

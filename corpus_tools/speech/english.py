@@ -18,7 +18,7 @@ __all__ = ["english_words"]
 _WORD = r"(?:[^\W\d_][\u0300-\u036f]*)+"
 _TOKEN = re.compile(
     rf"""
-    (?P<time>\d{{1,2}}:[0-5]\d(?!\d)(?:\s*[ap]\.?m\b\.?)?|\d{{1,2}}(?:\.[0-5]\d)?\s*[ap]\.?m\b\.?)
+    (?P<time>\d{{1,2}}:\d\d(?!\d)(?:\s*[ap]\.?m\b\.?)?|\d{{1,2}}(?:\.[0-5]\d)?\s*[ap]\.?m\b\.?)
   | (?P<money>[$£€]\s?\d+(?:,\d{{3}})*(?:\.\d+)?)
   | (?P<ordinal>\d+(?:st|nd|rd|th)\b)
   | (?P<number>(?:(?<![\w.])-)?(?:\d{{1,3}}(?:,\d{{3}})+(?!\d)|\d+)(?:\.\d+)?)
@@ -50,7 +50,10 @@ def _data() -> Mapping[str, Any]:
 def _time(text: str) -> str:
     found = re.match(r"(\d+)(?:[:.](\d\d))?\s*([ap]?)", text, re.IGNORECASE)
     assert found is not None
-    return time_of_day(int(found[1]), int(found[2] or 0), found[3].lower())
+    hour, minute = int(found[1]), int(found[2] or 0)
+    if minute > 59 or hour > 24 or (hour == 24 and minute):
+        raise InputError(f"'{text}' in the text is no time of day; write in words what is meant.")
+    return time_of_day(hour, minute, found[3].lower())
 
 
 def _money(text: str) -> str:

@@ -25,6 +25,7 @@ _WRITTEN = str.maketrans(
         "…": ".",
     }
 )
+_MARKUP = re.compile(r"""</?[A-Za-z][\w:.-]*(?:\s+[\w:.-]+\s*=\s*(?:"[^"]*"|'[^']*'))*\s*/?>|<[!?][^<>]*>""")
 _PIECE = re.compile(r"[^\s.,;:!?]+|[.,;:!?]")
 
 
@@ -58,8 +59,8 @@ def check_text(text: str) -> None:
     Raises
     ------
     InputError
-        Neither letters nor digits, control characters, or more than :data:`MOST_CHARACTERS`; the sentence
-        says which.
+        Neither letters nor digits, control characters, tags such as ``<break/>``, or more than
+        :data:`MOST_CHARACTERS`; the sentence says which.
     """
     if len(text) > MOST_CHARACTERS:
         raise InputError(
@@ -75,6 +76,11 @@ def check_text(text: str) -> None:
         before = f" (after '{shown}')" if shown else ""
         raise InputError(
             f"Character {place + 1} of the text{before} is {what} U+{ord(sign):04X}; take it out."
+        )
+    if tag := _MARKUP.search(text):
+        raise InputError(
+            f"The text holds the markup '{' '.join(tag[0].split())[:40]}', which is not understood; write "
+            "plain text, with commas and full stops for pauses."
         )
     if not any(sign.isalnum() for sign in text):
         raise InputError(_no_word(text))

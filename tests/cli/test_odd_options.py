@@ -68,6 +68,21 @@ def test_a_wrong_value_names_the_option_as_it_was_typed(
     assert not (tmp_path / "o").exists()
 
 
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--export", ""], "--export '' names nothing"),
+        (["--export", ",,"], "--export ',,' names nothing"),
+        (["--film-fps", "20"], "--film-fps goes with --export mp4 or frames"),
+        (["--film-fps", "20", "--export", "strip,csv"], "--film-fps goes with --export mp4 or frames"),
+    ],
+)
+def test_options_that_would_do_nothing_are_refused(tool, simulated_corpus, one, tmp_path, options, told):
+    args = ("synth", simulated_corpus, "--utterance", one, *options, "--out", tmp_path / "o")
+    refused(tool(*args), told)
+    assert not (tmp_path / "o").exists()
+
+
 def test_a_wrong_value_of_a_file_names_the_file_and_the_key(tool, simulated_corpus, one, tmp_path):
     (tmp_path / "c.toml").write_text("[alignment]\nrate_hz = 0\n")
     args = ("synth", simulated_corpus, "--utterance", one, "--config", tmp_path / "c.toml")

@@ -202,12 +202,12 @@ def test_a_text_that_fills_the_memory_is_refused_before_the_work(tool, corpus, t
     assert not (tmp_path / "o").exists()
 
 
-def test_markup_and_phoneme_codes_are_text(tool, corpus, tmp_path):
-    text = 'the time is <speak>now</speak> [[one]] & "two" $(touch x) `id`; \' \\ '
+def test_signs_and_phoneme_codes_are_text(tool, corpus, tmp_path):
+    text = 'the time is now [[one]] & "two" $(touch x) `id`; \' \\ '
     code, _, err = tool("synth", corpus, "--text", text, "--out", tmp_path / "o")
     assert (code, err) == (0, "")
     words = [w.text for w in read_labels(tmp_path / "o/labels.TextGrid").tier("words") if w.text]
-    assert words == "the time is speak now speak one and two dollars touch x id".split()  # noqa: SIM905
+    assert words == "the time is now one and two dollars touch x id".split()  # noqa: SIM905
 
 
 def test_a_voice_that_always_dies_costs_one_sentence(tool, corpus, tmp_path, monkeypatch):

@@ -52,6 +52,18 @@ def test_an_existing_folder_keeps_its_other_files(tmp_path):
     assert (folder / "a").read_text() == "new"
 
 
+def test_a_full_disk_is_told_of_the_place_that_was_given_and_of_no_hidden_one(tmp_path):
+    with (
+        pytest.raises(OutputError) as caught,
+        atomic_folder(tmp_path / "out") as hidden,
+        atomic_file(hidden / "markers" / "a.npz"),
+    ):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert f"'{tmp_path / 'out/markers/a.npz'}': No space left" in str(caught.value)
+    assert ".part" not in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("place", ["file", "file/below", "/proc/nowhere"])
 def test_unwritable_places_are_named(tmp_path, place):
     (tmp_path / "file").write_text("x")

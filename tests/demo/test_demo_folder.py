@@ -5,6 +5,7 @@ import shutil
 
 import pytest
 
+from corpus_tools.core import OutputError
 from corpus_tools.demo import VERSION, VOICES, demo_folder, folder
 from corpus_tools.demo.corpus import simulate_corpus
 
@@ -116,3 +117,12 @@ def test_of_two_that_make_it_at_once_the_first_wins(tmp_path, made):
     assert demo_folder(place, meanwhile) == place
     assert (place / "mark").read_text() == "first"
     assert alone(place)
+
+
+def test_what_goes_wrong_names_the_folder_that_was_asked_for(tmp_path, monkeypatch):
+    def full(fresh, progress=None):
+        raise OutputError(f"Cannot write '{fresh / 'markers/time01.npz'}': No space left on device.")
+
+    monkeypatch.setattr(folder, "simulate_corpus", full)
+    with pytest.raises(OutputError, match=f"'{tmp_path / 'demo/markers/time01.npz'}'"):
+        demo_folder(tmp_path / "demo")

@@ -130,6 +130,9 @@ def test_stopped_in_the_middle_nothing_remains(made, tmp_path):
 def test_names_are_a_list_and_unknown_ones_are_refused_with_the_known():
     assert export_names("mp4, frames,mp4,") == ("mp4", "frames")
     assert export_names(None) == ()
+    for nothing in ("", ",,", " , "):
+        with pytest.raises(InputError, match="names nothing; known, by comma: mp4, frames"):
+            export_names(nothing)
     with pytest.raises(InputError, match=r"export called 'mp5'; did you mean 'mp4'\?.*mp4.*frames"):
         export_names("frames,mp5")
 

@@ -120,6 +120,16 @@ REFUSED = {
     "five 五": "'五'",
     "+": "holds no word",
     "10²": "'²' (U+00B2)",
+    "it is 25:99": "'25:99' in the text is no time of day",
+    "it is 25:59": "'25:59'",
+    "it is 12:60": "'12:60'",
+    "it is 24:01 now": "'24:01'",
+    "at 30 pm": "'30 pm'",
+    "<speak>now</speak>": "the markup '<speak>'",
+    'now <break time="1s"/> five': """the markup '<break time="1s"/>'""",
+    "now </p>": "'</p>'",
+    "<?xml version='1.0'?> now": "the markup '<?xml",
+    "<audio\nsrc='x'>": "the markup '<audio src='x'>'",
 }
 
 
@@ -131,6 +141,23 @@ def test_what_cannot_be_spoken_costs_one_sentence(text):
     assert REFUSED[text] in sentence
     assert len(sentence) < 300
     assert "\n" not in sentence
+
+
+@given(hour=st.integers(0, 99), minute=st.integers(0, 99))
+def test_a_time_is_read_or_refused_by_its_numbers(hour, minute):
+    text = f"it is {hour}:{minute:02d}"
+    if minute < 60 and (hour < 24 or (hour == 24 and minute == 0)):
+        assert said(text).startswith(f"it is {cardinal(hour)} ")
+    else:
+        with pytest.raises(InputError, match="no time of day"):
+            said(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["one < two", "two > one", "a <3 b", "< now >", "one <- two", "<now", "5 <x and x>3"]
+)
+def test_single_angles_are_no_markup(text):
+    assert normalise_text(text)
 
 
 def test_the_longest_text_is_taken():
