@@ -84,7 +84,7 @@ def frozen_problem(capture: Capture, low_s: float, high_s: float) -> str | None:
         Only frames between them count, s.
     """
     times, points = capture.times_s, np.asarray(capture.positions_mm)
-    seen = np.isfinite(points).all(axis=2)
+    seen: BoolArray = np.asarray(np.isfinite(points).all(axis=2))
     both = seen[1:] & seen[:-1]
     equal = ((points[1:] == points[:-1]).all(axis=2) | ~both).all(axis=1) & both.any(axis=1)
     if len(equal) and equal.all():
