@@ -225,17 +225,6 @@ def test_the_frame_keeps_its_sizes_and_nothing_is_clipped(browser_page, served, 
         assert words.evaluate("e => e.scrollWidth <= e.clientWidth"), words.inner_text()
 
 
-def test_a_wrong_folder_is_said_where_it_was_typed(browser_page, served):
-    drawn(browser_page, served)
-    browser_page.get_by_role("button", name="Corpus", exact=True).click()
-    field = browser_page.get_by_label("Folder of the corpus")
-    field.fill(str(served[2] / "nothing"))
-    field.press("Enter")
-    browser_page.locator(".start .notice.err", has_text="corpus.toml").wait_for()
-    browser_page.get_by_role("button", name="Back to the open corpus").click()
-    lane(browser_page).wait_for()
-
-
 def test_the_keys_of_a_fragment_swap_pin_ban_undo_and_hear(browser_page, served):
     session = drawn(browser_page, served)
     result = session.result

@@ -167,3 +167,14 @@ def test_several_heads_speak_side_by_side(opened):
     assert at_rest() != before
     browser_page.get_by_role("button", name="Several heads").click()
     browser_page.wait_for_function(f"() => !{FIND}.vsw.scene.actors.has('female/skin')")
+
+
+def test_a_wrong_folder_is_said_where_it_was_typed(browser_page, served):
+    drawn(browser_page, served)
+    browser_page.get_by_role("button", name="Corpus", exact=True).click()
+    field = browser_page.get_by_label("Folder of the corpus")
+    field.fill(str(served[2] / "nothing"))
+    field.press("Enter")
+    browser_page.locator(".start .notice.err", has_text="corpus.toml").wait_for()
+    browser_page.get_by_role("button", name="Back to the open corpus").click()
+    lane(browser_page).wait_for()
