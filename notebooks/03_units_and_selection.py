@@ -56,7 +56,7 @@ if recordings:
         settings={"frame_time": "centre", "head_scale": "true"},
     )
 else:
-    simulate_corpus(work / "corpus", n_sentences=14)
+    simulate_corpus(work / "corpus", n_sentences=9)
 corpus = open_corpus(work / "corpus")
 views = unit_views(corpus.inventory)
 pd.Series({k: v for k, v in views.as_dict().items() if isinstance(v, int)}, name="units").to_frame()

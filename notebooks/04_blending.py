@@ -57,7 +57,7 @@ if recordings:
         settings={"frame_time": "centre", "head_scale": "true"},
     )
 else:
-    simulate_corpus(work / "corpus", n_sentences=14)
+    simulate_corpus(work / "corpus", n_sentences=9)
 corpus = open_corpus(work / "corpus")
 config = Config()
 

@@ -31,7 +31,8 @@ class Shown:
         wait_drawn(self.tab)
         # the server builds one page beforehand for nobody; the newest belongs to the tab
         self.view, self.doc = self.views[-1], self.docs[-1]
-        self.wait_heard()
+        if hasattr(self.view, "_line"):
+            self.wait_heard()
 
     def wait_heard(self, longest_s=20.0):
         """Wait until the server knows that the tab draws; what is sent before goes out unasked."""

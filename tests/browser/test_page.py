@@ -138,7 +138,7 @@ def test_next_sentence_and_presets_by_key(browser_page, served):
     browser_page.keyboard.press("]")
     until(browser_page, lambda: session.sentence != first)
     settled(browser_page, session)
-    browser_page.locator(".chip", has_text=session.sentence).wait_for()
+    browser_page.locator(".chip", has_text="held out · ").wait_for()
     browser_page.keyboard.press("1")
     browser_page.locator("button.Mui-selected", has_text="Linear").wait_for()
     assert session.weighting == "linear"

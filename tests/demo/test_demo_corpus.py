@@ -68,14 +68,19 @@ def test_a_smaller_corpus_is_the_beginning_of_a_larger_one(tmp_path):
     assert {name: small[name] for name in shared} == {name: large[name] for name in shared}
 
 
-def test_the_corpus_says_that_it_is_simulated_wherever_it_is_shown(simulated_corpus):
+@pytest.fixture(scope="module")
+def checked(simulated_corpus):
+    return check_corpus(simulated_corpus)
+
+
+def test_the_corpus_says_that_it_is_simulated_wherever_it_is_shown(simulated_corpus, checked):
     description = read_description(simulated_corpus)
     assert "simulated" in description.name
     assert (description.frame_time, description.head_scale) == ("start", False)
     readme = (simulated_corpus / "README.txt").read_text()
     assert readme.startswith("Simulated, not recorded")
     assert f"Version {VERSION} of the simulator, voice espeak" in readme
-    assert "simulated" in health_lines(check_corpus(simulated_corpus))[0]
+    assert "simulated" in health_lines(checked)[0]
 
 
 def test_the_readme_lists_what_went_wrong_in_each_recording(tmp_path):
@@ -120,18 +125,22 @@ def test_recordings_fit_together(simulated_corpus):
         assert labels.names == ("phones", "words")
 
 
-def test_it_opens_whole_and_check_finds_its_gaps_and_nothing_else(opened_corpus, simulated_corpus):
+def test_it_opens_whole_and_check_finds_its_gaps_and_the_slips_of_its_jig_and_nothing_else(
+    opened_corpus, simulated_corpus, checked
+):
     assert opened_corpus.skipped == {}
     assert len(opened_corpus.names) == 14
     assert np.isfinite(opened_corpus.neutral_mm).all()
-    report = check_corpus(simulated_corpus)
-    assert report["advice"] == []
-    for row in report["recordings"]:
-        hidden = read_truth(simulated_corpus / "truth" / f"{row['id']}.npz").occluded.any(axis=1)
+    assert checked["advice"] == []
+    for row in checked["recordings"]:
+        truth = read_truth(simulated_corpus / "truth" / f"{row['id']}.npz")
+        hidden = truth.occluded.any(axis=1)
         edges = np.flatnonzero(np.diff(np.r_[0, hidden, 0])).reshape(-1, 2) - [0, 1]
         assert row["gaps"] == edges.tolist()
-        assert len(row["problems"]) == bool(row["gaps"])
-    assert 10 <= report["summary"]["with_gaps"] <= 14
+        slips = [p for p in row["problems"] if "slipped" in p]
+        assert len(row["problems"]) - len(slips) == bool(row["gaps"])
+        assert not slips or np.isfinite(truth.slip_s)
+    assert 10 <= checked["summary"]["with_gaps"] <= 14
 
 
 def test_a_sentence_held_out_is_covered_by_the_others(opened_corpus):

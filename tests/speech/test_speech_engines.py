@@ -187,10 +187,11 @@ def test_every_word_has_its_time_and_the_words_join_up():
     assert [w.text for w in spoken.words] == text.replace(",", "").split()
 
 
-def test_brackets_are_no_phoneme_codes_and_tags_are_no_tags():
+def test_brackets_are_no_phoneme_codes_and_tags_are_refused():
     plain = speak_text("now, aI, then", PHONES)
     assert speak_text("now [[aI]] then", PHONES).labels == plain.labels
-    assert "AW" in speak_text("<break/> now", PHONES).labels
+    with pytest.raises(InputError, match="markup"):
+        speak_text("<break/> now", PHONES)
 
 
 def test_the_library_is_not_in_our_process():
