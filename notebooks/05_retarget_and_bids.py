@@ -49,8 +49,8 @@ hv.extension("bokeh", inline=True)
 # %% [markdown]
 # ## One capture, many heads
 #
-# The sentence is spoken once, by fragments of a small *simulated* corpus, and retargetted to four
-# of the bundled heads. What the warp leaves at the markers, and whether it folds space anywhere, is checked for
+# The sentence is spoken once, by fragments of a small *simulated* corpus, and retargetted to four of the
+# bundled heads. What the warp leaves at the markers, and whether it folds space anywhere, is checked for
 # each.
 
 # %%
