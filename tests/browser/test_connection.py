@@ -16,8 +16,9 @@ def started():
     server.stop()
 
 
-def test_a_stopped_server_is_told_in_a_band(started, browser_page):
+def test_a_stopped_server_is_told_in_a_band(started, browser_page, watched):
     url, server = started
+    watched[1].expected.append("not connected so cannot send")  # what the page was sending at that moment
     browser_page.goto(url)
     browser_page.get_by_label("Folder of the corpus").wait_for()
     band = browser_page.get_by_role("alert").filter(has_text="Connection lost")
