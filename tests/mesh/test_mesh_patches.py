@@ -159,14 +159,14 @@ class TestAttachment:
         control = bound().surface.control_rest_mm
         n = 3 * len(bound().surface.chart.triangles)
         random = np.random.default_rng(seed)
-        patches = random.integers(0, n, 20)
-        point, _, _, normal = frames_at(control[patches], random.dirichlet(np.ones(3), 20))
+        patches = random.integers(0, n, 100)
+        point, _, _, normal = frames_at(control[patches], random.dirichlet(np.ones(3), 100))
         allowed = np.arange(len(control)) < n
         found, bary = nearest_on_patches(point + 0.5 * normal, control, allowed)
         place = frames_at(control[found], bary)[0]
         distance = np.linalg.norm(place - point - 0.5 * normal, axis=1)
         # where the surface folds upon itself the search may end beside the best place
-        assert np.quantile(distance, 0.8) <= 0.5 + 1e-6
+        assert np.quantile(distance, 0.9) <= 0.5 + 1e-6
         assert distance.max() < 1.5
 
     @pytest.mark.parametrize("bind", [bind_bid, bind_linear])
