@@ -19,7 +19,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -249,17 +249,17 @@ def bars(page: dict[str, Any]) -> dict[str, dict[str, Any]]:
     return {name: {"is": is_, "bar": bar, "met": is_ <= bar} for name, (is_, bar) in figures.items()}
 
 
-def main() -> None:
-    """Print the figures as JSON, and write them to a file when asked."""
-    parser = argparse.ArgumentParser(description="From a change to its pixels in Chromium.")
+def run(measured: Callable[[Path | None], dict[str, Any]], description: str) -> None:
+    """Measure as the command line says, print the figures as JSON, and write them to a file when asked."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--corpus", type=Path, help="corpus folder for the page; a simulated one by default")
     parser.add_argument("--json", type=Path, help="file to write as well")
     given = parser.parse_args()
-    text = json.dumps(measure(given.corpus))
+    text = json.dumps(measured(given.corpus))
     if given.json:
         given.json.write_text(text + "\n", encoding="utf-8")
     print(text)
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, "From a change to its pixels in Chromium.")

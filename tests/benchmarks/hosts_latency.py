@@ -11,8 +11,6 @@ served one before, or the cell of JupyterLab, whose kernel has opened the corpus
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
 import sys
 import tempfile
@@ -22,7 +20,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from benchmarks.browser_latency import MESH, bars, measure_drag, playback, summary, wait_drawn
+from benchmarks.browser_latency import MESH, bars, measure_drag, playback, run, summary, wait_drawn
 from browser import chromium
 from browser.hosts import start_lab, start_panel, stop, write_notebook
 
@@ -143,17 +141,5 @@ def measure(corpus: Path | None = None) -> dict[str, Any]:
     return found
 
 
-def main() -> None:
-    """Print the figures as JSON, and write them to a file when asked."""
-    parser = argparse.ArgumentParser(description="A head and g(u) behind panel serve and in JupyterLab.")
-    parser.add_argument("--corpus", type=Path, help="corpus folder; a simulated one by default")
-    parser.add_argument("--json", type=Path, help="file to write as well")
-    given = parser.parse_args()
-    text = json.dumps(measure(given.corpus))
-    if given.json:
-        given.json.write_text(text + "\n", encoding="utf-8")
-    print(text)
-
-
 if __name__ == "__main__":
-    main()
+    run(measure, "A head and g(u) behind panel serve and in JupyterLab.")

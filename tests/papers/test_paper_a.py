@@ -1,7 +1,8 @@
 """Paper A, from its data to its future work: what it says of its method, in its order, and the test of each.
 
 Equations (1) to (3), the selection algorithm, the grammar, figures 2 to 5, and what the paper calls future
-work and we built. What it leaves open, and what we chose for which reason, is decision 013.
+work and we built; syllable units are not. What it leaves open, and what we chose for which reason, is
+decision 013.
 """
 
 # ruff: noqa: F401, I001  imported for pytest to run, in the order of the paper
