@@ -132,18 +132,25 @@ def _worst_first(around: FloatArray, at: int, precision: FloatArray, limit: Floa
     neighbours. `around` are the frames of the running median, and `at` is the one that is looked at.
     """
     found: list[int] = []
-    n = len(limit)
+    left = np.arange(len(limit))
     while len(found) < MOST_AT_ONCE:
-        size = np.zeros(n)
-        for marker in np.setdiff1d(np.arange(n), found):
-            block = (3 * np.array([*found, marker])[:, None] + np.arange(3)).ravel()
-            rest = _told(around, precision, block)[:, -3:]
-            size[marker] = np.linalg.norm(rest[at] - np.median(rest, axis=0))
-        worst = int(np.argmax(size / limit))
-        if size[worst] <= limit[worst]:
+        block = (3 * left[:, None] + np.arange(3)).ravel()
+        rest = _residuals(around[:, block], precision[np.ix_(block, block)])
+        size = np.linalg.norm(rest[at] - np.median(rest, axis=0), axis=1)
+        worst = int(np.argmax(size / limit[left]))
+        if size[worst] <= limit[left[worst]]:
             break
-        found.append(worst)
+        precision = _without(precision, int(left[worst]))
+        found.append(int(left[worst]))
+        left = np.delete(left, worst)
     return found
+
+
+def _without(precision: FloatArray, marker: int) -> FloatArray:
+    """Return the precision of all markers when nothing is known of one; its own rows mean nothing then."""
+    own = slice(3 * marker, 3 * marker + 3)
+    pull = precision[:, own]
+    return precision - pull @ np.linalg.solve(precision[own, own], pull.T)
 
 
 def _spikes(

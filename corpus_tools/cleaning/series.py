@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
+from scipy.linalg import lapack
 
 from corpus_tools.core import BoolArray, FloatArray, IntArray
 
@@ -64,10 +65,17 @@ def _rows(seen: BoolArray, hidden: BoolArray, most: int = MOST_ROWS) -> tuple[In
     return rows, np.flatnonzero(~hidden[rows]), np.flatnonzero(hidden[rows])
 
 
-def _likelihood(covariance: FloatArray, values: FloatArray) -> tuple[float, float]:
-    """Return twice the log-likelihood of channels, their variance profiled out, and that variance."""
-    factor = np.linalg.cholesky(covariance)
-    white = np.linalg.solve(factor, values)
+def _likelihood(covariance: FloatArray, noise: float, values: FloatArray) -> tuple[float, float]:
+    """Return twice the log-likelihood of channels, their variance profiled out, and that variance.
+
+    `covariance` is without the noise, whose variance is added on the diagonal.
+    """
+    noisy = covariance.copy()
+    noisy.flat[:: len(noisy) + 1] += noise
+    factor, wrong = lapack.dpotrf(noisy.T, lower=1, clean=0, overwrite_a=1)
+    if wrong:
+        raise np.linalg.LinAlgError("the covariance of what is seen is not positive definite")
+    white, _ = lapack.dtrtrs(factor, values, lower=1)
     variance = max(float((white**2).mean()), 1e-12)
     return -values.size * np.log(variance) - 2 * values.shape[1] * np.log(np.diag(factor)).sum(), variance
 
@@ -88,10 +96,11 @@ def _averaged(
 ) -> tuple[FloatArray, FloatArray]:
     """Return mean and standard deviation of the asked rows, over the likely ones of the covariances."""
     tried = []
-    for whole, noise in product(covariances, NOISES):
-        noisy = whole[np.ix_(known, known)] + noise * np.eye(len(known))
-        score, variance = _likelihood(noisy, values)
-        tried.append((score, whole, noise, variance))
+    for whole in covariances:
+        among = whole[np.ix_(known, known)]
+        for noise in NOISES:
+            score, variance = _likelihood(among, noise, values)
+            tried.append((score, whole, noise, variance))
     best = max(score for score, *_ in tried)
     mean, square, total = (
         np.zeros((len(asked), values.shape[1])),
@@ -149,8 +158,9 @@ class _Led:
     follow: float
     noise: float
 
-    def covariance(self, apart_s: FloatArray, alike: FloatArray) -> FloatArray:
-        return self.kernel(apart_s, self.length_s) + (self.follow if self.led else 0.0) * alike
+    def covariance(self, remembered: FloatArray, alike: FloatArray) -> FloatArray:
+        """Return the covariance; `remembered` is its kernel at the times."""
+        return remembered + self.follow * alike if self.led and self.follow else remembered
 
 
 def _first() -> list[_Led]:
@@ -189,21 +199,24 @@ def fill_led(
     times, values, guess, leaders = times_s[rows], values[rows], guess[rows], leaders[rows]
     apart = np.abs(times[:, None] - times)
     alike = leaders @ leaders.T / leaders.shape[1]
+    alike_known, apart_known = alike[np.ix_(known, known)], apart[np.ix_(known, known)]
+    kernels = {(k, length): k(apart_known, length) for k, length in product(KERNELS, LENGTHS_S)}
     rest = {True: (values - guess)[known], False: values[known]}
     means = {led: r.mean(axis=0) for led, r in rest.items()}
 
     def likeliest(models: Iterable[_Led]) -> tuple[_Led, float]:
         scored = []
         for model in models:
-            among = model.covariance(apart, alike)[np.ix_(known, known)] + model.noise * np.eye(len(known))
-            scored.append((*_likelihood(among, rest[model.led] - means[model.led]), model))
+            among = model.covariance(kernels[model.kernel, model.length_s], alike_known)
+            scored.append((*_likelihood(among, model.noise, rest[model.led] - means[model.led]), model))
         _, variance, model = max(scored, key=lambda row: row[0])
         return model, variance
 
     first, _ = likeliest(_first())
     finer = product(FOLLOWING if first.led else (0.0,), NOISES)
     model, variance = likeliest(replace(first, follow=follow, noise=noise) for follow, noise in finer)
-    covariance, known_rest = model.covariance(apart, alike), rest[model.led] - means[model.led]
+    covariance = model.covariance(model.kernel(apart, model.length_s), alike)
+    known_rest = rest[model.led] - means[model.led]
     filled, spread = _posterior(covariance, model.noise, variance, known_rest, known, asked)
     return (guess[asked] if model.led else 0.0) + means[model.led] + filled, np.sqrt(spread)
 

@@ -10,7 +10,7 @@ from corpus_tools.config.model import (
     config_schema,
     config_with,
 )
-from corpus_tools.config.sections import SECTIONS, Section, section
+from corpus_tools.config.section import SECTIONS, Section, section
 
 __all__ = [
     "SCHEMA",

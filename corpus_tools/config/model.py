@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
-from corpus_tools.config.sections import SECTIONS
+from corpus_tools.config import motion_sections, sections  # noqa: F401  they enter themselves, in this order
+from corpus_tools.config.section import SECTIONS
 from corpus_tools.core import ConfigError
 from corpus_tools.core.errors import suggestion
 

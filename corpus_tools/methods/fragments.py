@@ -10,8 +10,10 @@ from corpus_tools.methods.registry import METHODS, SEARCHES, Method, Predictor
 from corpus_tools.methods.settings import Fading, Seconds, Weight, Weighting
 from corpus_tools.methods.training import TrainingSet
 from corpus_tools.synthesis import render_selection
+from corpus_tools.synthesis.alignment import WarpKind
 from corpus_tools.synthesis.blending import BlendMode
 from corpus_tools.synthesis.lips import make_contacts
+from corpus_tools.synthesis.pieces import Resampling
 
 __all__ = ["CONTEXT_S", "fit_greedy", "fit_viterbi"]
 
@@ -60,6 +62,8 @@ def fit_greedy(
     weighting: Weighting = "smootherstep",
     overlap_s: Seconds = 0.12,
     inertial_s: Fading = 0.12,
+    warp: WarpKind = "linear",
+    resampling: Resampling = "inverse",
     duration: Weight = 1.0,
     context: Weight = 0.3,
 ) -> Predictor:
@@ -75,12 +79,15 @@ def fit_greedy(
     mode : {"crossfade", "inertial"}
     weighting, overlap_s, inertial_s
         As of :func:`~corpus_tools.synthesis.blend_pieces`.
+    warp, resampling
+        As of :func:`~corpus_tools.synthesis.align_fragments`.
     duration, context : float
         Weights of timing and context among fragments of the same length.
     """
     blend: dict[str, Any] = {"mode": mode, "weighting": weighting, "overlap_s": overlap_s}
+    blend |= {"inertial_s": inertial_s, "warp": warp, "resampling": resampling}
     weights = {"duration": duration, "context": context}
-    return _fit(training, "greedy", weights, blend | {"inertial_s": inertial_s}, remove_bias, closure)
+    return _fit(training, "greedy", weights, blend, remove_bias, closure)
 
 
 def fit_viterbi(
@@ -91,6 +98,8 @@ def fit_viterbi(
     weighting: Weighting = "smootherstep",
     overlap_s: Seconds = 0.12,
     inertial_s: Fading = 0.12,
+    warp: WarpKind = "linear",
+    resampling: Resampling = "inverse",
     duration: Weight = 1.0,
     context: Weight = 0.3,
     backoff: Weight = 2.0,
@@ -103,9 +112,10 @@ def fit_viterbi(
     Parameters as of :func:`fit_greedy`, and the weights of :func:`~corpus_tools.synthesis.select_viterbi`.
     """
     blend: dict[str, Any] = {"mode": mode, "weighting": weighting, "overlap_s": overlap_s}
+    blend |= {"inertial_s": inertial_s, "warp": warp, "resampling": resampling}
     weights = {"duration": duration, "context": context, "backoff": backoff, "join": join}
     weights |= {"velocity": velocity, "per_join": per_join}
-    return _fit(training, "viterbi", weights, blend | {"inertial_s": inertial_s}, remove_bias, closure)
+    return _fit(training, "viterbi", weights, blend, remove_bias, closure)
 
 
 _LONGEST = "Longest fragment first, as paper A prints it (its endless loop mended)."

@@ -26,7 +26,14 @@ from corpus_tools.pipeline.speaking import (
     speech_facts,
     speech_language,
 )
-from corpus_tools.pipeline.stages import Synthesis, align_units, blend_units, select_units, synthesise
+from corpus_tools.pipeline.stages import (
+    Synthesis,
+    align_units,
+    blend_units,
+    compare_alignments,
+    select_units,
+    synthesise,
+)
 from corpus_tools.pipeline.stale import listed_files, remove_stale
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.synthesis.lips import LipModel
@@ -52,6 +59,7 @@ __all__ = [
     "cleaning_lines",
     "cleaning_report",
     "code_hash",
+    "compare_alignments",
     "corpus_provenance",
     "corpus_vocabulary",
     "health_lines",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from corpus_tools.config import ConfigBase
-from corpus_tools.core import InputError, Selection, Trajectory, UnitRef, Utterance
+from corpus_tools.core import Fragment, InputError, Selection, Trajectory, UnitRef, Utterance
 from corpus_tools.fragments import cut_fragment
 from corpus_tools.methods import CONTEXT_S, SEARCHES
 from corpus_tools.pipeline.head import Animation, Head, animate, vertex_frames
@@ -20,15 +20,17 @@ from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.pipeline.usable import LEAST_RATE_HZ
 from corpus_tools.synthesis import (
     AlignedPieces,
+    AlignmentFacts,
     Contact,
     align_fragments,
+    alignment_facts,
     blend_pieces,
     lip_contacts,
     rest_at_ends,
 )
 from corpus_tools.synthesis.lips import make_contacts
 
-__all__ = ["Synthesis", "align_units", "blend_units", "select_units", "synthesise"]
+__all__ = ["Synthesis", "align_units", "blend_units", "compare_alignments", "select_units", "synthesise"]
 
 MOST_BYTES = 2e9
 """Of the vertices of one synthesis (our choice: about 5 minutes of the bundled head at 120 frames/s)."""
@@ -114,17 +116,38 @@ def _check_rate(rate_hz: float) -> None:
         )
 
 
+def _fragments(corpus: OpenCorpus, selection: Selection) -> list[Fragment]:
+    return [cut_fragment(corpus.inventory, c.unit, context_s=CONTEXT_S) for c in selection.chosen]
+
+
+@one_thread
+def compare_alignments(
+    corpus: OpenCorpus, utterance: Utterance, selection: Selection, config: ConfigBase
+) -> AlignmentFacts:
+    """Align the chosen fragments by both warps and both ways of resampling, and say how they differ."""
+    _check_rate(config.alignment.rate_hz)
+    return alignment_facts(
+        selection,
+        utterance,
+        _fragments(corpus, selection),
+        names=corpus.markers,
+        natural=corpus.natural,
+        silence=corpus.phones.silence,
+        rate_hz=config.alignment.rate_hz,
+        c=config.alignment.shape_c,
+    )
+
+
 @one_thread
 def align_units(
     corpus: OpenCorpus, utterance: Utterance, selection: Selection, config: ConfigBase
 ) -> AlignedPieces:
     """Cut, warp and resample the chosen fragments; g(u) and the overlap do not matter yet."""
     _check_rate(config.alignment.rate_hz)
-    fragments = [cut_fragment(corpus.inventory, c.unit, context_s=CONTEXT_S) for c in selection.chosen]
     return align_fragments(
         selection,
         utterance,
-        fragments,
+        _fragments(corpus, selection),
         names=corpus.markers,
         rate_hz=config.alignment.rate_hz,
         warp=config.alignment.warp,
@@ -139,7 +162,8 @@ def blend_units(
     corpus: OpenCorpus, utterance: Utterance, pieces: AlignedPieces, config: ConfigBase
 ) -> Trajectory:
     """Blend aligned fragments, close the lips, rest at the ends: the quick part that a slider calls."""
-    blended = blend_pieces(pieces, **config.blend.model_dump(), natural=corpus.natural)
+    settings = config.blend.model_dump()
+    blended = blend_pieces(pieces, **settings, classes=corpus.phones.display_classes, natural=corpus.natural)
     if config.closure.project:
         closure = config.closure
         blended = make_contacts(

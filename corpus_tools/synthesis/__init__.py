@@ -1,6 +1,7 @@
 """Synthesis of marker motion from captured fragments (paper A section 5)."""
 
 from corpus_tools.synthesis.alignment import TimeWarp, fragment_warp
+from corpus_tools.synthesis.alignment_facts import AlignmentFacts, PhoneStretch, WayFacts, alignment_facts
 from corpus_tools.synthesis.backoff import Pin
 from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
 from corpus_tools.synthesis.blending import blend_pieces, blend_weights, render_selection
@@ -28,18 +29,21 @@ from corpus_tools.synthesis.usercurve import DEFAULT_CURVE, curve_order, curve_t
 from corpus_tools.synthesis.visible import how_it_differs
 from corpus_tools.synthesis.viterbi import select_viterbi
 from corpus_tools.synthesis.weighting import WEIGHTINGS, weighting
+from corpus_tools.synthesis.weighting_at import WeightingAt, parse_weighting_at, weightings_of_joins
 
 __all__ = [
     "DEFAULT_CURVE",
     "JOIN_WINDOW_S",
     "WEIGHTINGS",
     "AlignedPieces",
+    "AlignmentFacts",
     "Contact",
     "EffectCurve",
     "InertialMotion",
     "JoinFeatures",
     "NaturalDistribution",
     "PhoneClasses",
+    "PhoneStretch",
     "Piece",
     "Pin",
     "PostureBasis",
@@ -47,7 +51,10 @@ __all__ = [
     "StandIn",
     "TimeRbf",
     "TimeWarp",
+    "WayFacts",
+    "WeightingAt",
     "align_fragments",
+    "alignment_facts",
     "blend_pieces",
     "blend_weights",
     "close_lips",
@@ -67,6 +74,7 @@ __all__ = [
     "narrowed",
     "natural_distribution",
     "overlap_lengths",
+    "parse_weighting_at",
     "peaks_at",
     "posture_basis",
     "prepare_selection",
@@ -81,4 +89,5 @@ __all__ = [
     "stand_ins_told",
     "user_weighting",
     "weighting",
+    "weightings_of_joins",
 ]

@@ -36,6 +36,8 @@ class TimeWarp:
     hold_before_s, hold_after_s : float
         Source times beyond which the pose is held: silence of the target that the source does not have.
         The clock slows down to the hold over :data:`HOLD_EASE_S`, without a jump of velocity.
+    merged : int
+        Labels left out because they coincide with their neighbour on either clock.
     """
 
     source_s: FloatArray
@@ -43,6 +45,7 @@ class TimeWarp:
     kind: WarpKind = "linear"
     hold_before_s: float = -np.inf
     hold_after_s: float = np.inf
+    merged: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "source_s", frozen(self.source_s))
@@ -147,8 +150,11 @@ def fragment_warp(
     kind : {"linear", "pchip"}
     silence : str
     """
-    source, target = _increasing(*_knots(fragment, spoken, silence))
-    return TimeWarp(source, target, kind, *_holds(fragment, silence))
+    labels = _knots(fragment, spoken, silence)
+    source, target = _increasing(*labels)
+    different = {(round(s, 6), round(t, 6)) for s, t in zip(*labels, strict=True)}  # an edge ends and begins
+    merged = len(different) - len(source)
+    return TimeWarp(source, target, kind, *_holds(fragment, silence), merged)
 
 
 def rest_clock(times_s: FloatArray, duration_s: float, lead_s: float, tail_s: float) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -17,7 +17,7 @@ from corpus_tools.synthesis.overlap import OverlapRule, overlap_lengths
 from corpus_tools.synthesis.pieces import MARGIN_S, AlignedPieces, Resampling, align_fragments
 from corpus_tools.synthesis.usercurve import DEFAULT_CURVE
 from corpus_tools.synthesis.weighting import Weighting
-from corpus_tools.synthesis.weighting import weighting as weighting_function
+from corpus_tools.synthesis.weighting_at import weightings_of_joins
 
 __all__ = ["BlendMode", "blend_pieces", "blend_weights", "render_selection"]
 
@@ -25,7 +25,7 @@ BlendMode = Literal["crossfade", "inertial"]
 
 
 def blend_weights(
-    times_s: FloatArray, joins_s: FloatArray, overlaps_s: FloatArray, g: Weighting
+    times_s: FloatArray, joins_s: FloatArray, overlaps_s: FloatArray, g: Weighting | Sequence[Weighting]
 ) -> FloatArray:
     """Return the weight of every piece in every frame, (n_pieces, n_frames); columns sum to 1.
 
@@ -37,21 +37,22 @@ def blend_weights(
     times_s : (n_frames,) s
     joins_s, overlaps_s : (n_joins,) s
         Centres and lengths of the overlaps; increasing, not meeting.
-    g : callable
-        Weighting function.
+    g : callable, or n_joins of them
+        Weighting function, of all joins or of each.
     """
+    each = [g] * len(joins_s) if callable(g) else g
     fading = np.ones((len(joins_s) + 2, len(times_s)))
     fading[-1] = 0.0
     for k, (centre, length) in enumerate(zip(joins_s, overlaps_s, strict=True)):
         if length > 0:
-            fading[k + 1] = 1.0 - g((times_s - (centre - 0.5 * length)) / length)
+            fading[k + 1] = 1.0 - each[k]((times_s - (centre - 0.5 * length)) / length)
         else:
             fading[k + 1] = (times_s >= centre).astype(np.float64)
     return fading[:-1] - fading[1:]
 
 
 def _cross_fade(
-    aligned: AlignedPieces, overlaps_s: FloatArray, g: Weighting
+    aligned: AlignedPieces, overlaps_s: FloatArray, g: Sequence[Weighting]
 ) -> tuple[FloatArray, npt.NDArray[np.uint8]]:
     """Return the blended motion (n_frames, n_markers, 3) and the flags of all that has a say in it."""
     weights = blend_weights(aligned.times_s, aligned.join_times_s, overlaps_s, g)
@@ -73,6 +74,8 @@ def blend_pieces(
     weighting: str = "smootherstep",
     shape: float = 0.0,
     curve_weights: Sequence[float] = DEFAULT_CURVE,
+    weighting_at: Sequence[str] = (),
+    classes: Mapping[str, str] | None = None,
     rule: OverlapRule = "shared-phone",
     overlap_s: float = 0.12,
     fraction: float = 0.5,
@@ -93,6 +96,11 @@ def blend_pieces(
         Its crossover, -1 to 1.
     curve_weights : sequence of float
         Of the slope of g(u) when it is the user's own ("user").
+    weighting_at : sequence of str
+        Joins, phones or classes of phones with a g(u) of their own
+        (:func:`~corpus_tools.synthesis.weighting_at.weightings_of_joins`).
+    classes : mapping of phone -> class, optional
+        For `weighting_at`.
     rule, overlap_s, fraction
         As of :func:`~corpus_tools.synthesis.overlap.overlap_lengths`; an overlap is never longer than the
         motion that aligned pieces keep around their joins (2 :data:`MARGIN_S`).
@@ -110,7 +118,7 @@ def blend_pieces(
     Raises
     ------
     InputError
-        There is no such mode or g(u), or a setting is out of range.
+        There is no such mode or g(u), a setting is out of range, or an exception names no join.
     """
     settings: dict[str, Any] = {"mode": mode}
     if mode == "crossfade":
@@ -120,8 +128,12 @@ def blend_pieces(
             settings["curve_weights"] = ",".join(f"{w:g}" for w in curve_weights)
         longest = min(overlap_s, 2.0 * MARGIN_S)
         phones = aligned.utterance.phones.intervals
+        shared = [phones[j].text for j in aligned.join_phones]
+        own = weightings_of_joins(shared, (weighting, shape), weighting_at, classes, curve_weights)
+        if weighting_at:
+            settings["weighting_at"] = ",".join(weighting_at)
         overlaps = overlap_lengths(phones, aligned.join_phones, rule, longest, fraction)
-        values, flags = _cross_fade(aligned, overlaps, weighting_function(weighting, shape, curve_weights))
+        values, flags = _cross_fade(aligned, overlaps, [g for _, g in own])
     elif mode == "inertial":
         moved = join_inertially(aligned, inertial_s)
         values, flags, overlaps = moved.values_mm, moved.flags, moved.reach_s

@@ -38,6 +38,8 @@ class Piece:
         Doubtful too where a time outside the captured range was asked for.
     cond : float
         Condition number of the resampling.
+    outside : int
+        Samples for which a time outside the captured range was asked; they hold its end.
     """
 
     source: str
@@ -47,6 +49,7 @@ class Piece:
     motion_mm: FloatArray
     flags: npt.NDArray[np.uint8]
     cond: float
+    outside: int = 0
 
     @property
     def stop(self) -> int:
@@ -112,7 +115,7 @@ def _flags_at(fragment: Fragment, asked: FloatArray, outside: npt.NDArray[np.boo
 
 def _resample(
     fragment: Fragment, warp: TimeWarp, times: FloatArray, mode: Resampling, c: float
-) -> tuple[FloatArray, npt.NDArray[np.uint8], float]:
+) -> tuple[FloatArray, npt.NDArray[np.uint8], float, int]:
     asked, outside = _source_times(warp, times, fragment)
     if mode == "inverse":
         rate = 1.0 / float(np.median(np.diff(fragment.times_s)))
@@ -120,7 +123,7 @@ def _resample(
     else:
         curve = fit_time_rbf(warp.to_target(fragment.times_s), fragment.motion_mm, c)
         motion, cond = curve(warp.to_target(asked)), curve.cond
-    return motion, _flags_at(fragment, asked, outside), cond
+    return motion, _flags_at(fragment, asked, outside), cond, int(outside.sum())
 
 
 def align_fragments(
@@ -174,9 +177,9 @@ def align_fragments(
         high = len(times) if at_end else _index(phones[chosen.last].centre_s + MARGIN_S, rate_hz) + 1
         low, high = max(0, low), min(len(times), high)
         mapping = fragment_warp(fragment, phones[chosen.first : chosen.last + 1], warp, silence)
-        motion, flags, cond = _resample(fragment, mapping, clock[low:high], resampling, c)
-        piece = Piece(chosen.unit.key, chosen.first, chosen.last, low, frozen(motion), flags, cond)
-        pieces.append(piece)
+        motion, flags, cond, outside = _resample(fragment, mapping, clock[low:high], resampling, c)
+        place = chosen.unit.key, chosen.first, chosen.last, low
+        pieces.append(Piece(*place, frozen(motion), flags, cond, outside))
     settings = (("c", c), ("resampling", resampling), ("warp", warp))
     return AlignedPieces(utterance, frozen(times), tuple(names), tuple(pieces), settings)
 

@@ -30,6 +30,7 @@ OPENED = """\
 import panel as pn
 from corpus_tools.config import Config, config_with
 from corpus_tools.pipeline import align_units, animate, blend_units, open_corpus, prepare_head, synthesise
+from workbench.views.prompt import prompt
 from workbench.views.speaking_head import move_head, show_head
 pn.extension(inline=True)
 config = Config()
@@ -41,7 +42,7 @@ pieces = align_units(corpus, target, synthesis.selection, config)
 """
 SHOWN = """\
 view = show_head(head, synthesis.animation, height=400)
-slider = pn.widgets.FloatSlider(name="Crossover", start=-1.0, end=1.0, step=0.001, value=0.0, width=420)
+slider = prompt(pn.widgets.FloatSlider(name="Crossover", start=-1, end=1, step=0.001, value=0.0, width=420))
 
 def blend(event):
     changed = config_with(config, blend__shape=event.new)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import threading
 import time
 
@@ -65,11 +66,26 @@ class Shown:
 
     def pixels(self):
         """Return the picture, (height, width, 3), top row first."""
-        found = self.get(
-            "(() => { const p = v.pixels(); return [v.canvas.width, v.canvas.height, [...p]]; })()"
-        )
-        width, height, values = found
-        return np.array(values, np.uint8).reshape(height, width, 4)[::-1, :, :3]
+        picture = self.array("v.pixels()", np.uint8)
+        width, height = self.get("[v.canvas.width, v.canvas.height]")
+        return picture.reshape(height, width, 4)[::-1, :, :3]
+
+    def array(self, expression, dtype=np.float32):
+        """Return a typed array of the browser; as text, for a list of numbers takes seconds."""
+        return np.frombuffer(base64.b64decode(self.get(f"({AS_TEXT})({expression})")), dtype)
+
+    def positions(self, name):
+        """Return the points of an actor as the graphics has them, (n, 3)."""
+        return self.array(f"v.positions({name!r})").reshape(-1, 3)
+
+
+AS_TEXT = """(values) => {
+  const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+  const parts = [];
+  for (let i = 0; i < bytes.length; i += 8192)
+    parts.push(String.fromCharCode(...bytes.subarray(i, i + 8192)));
+  return btoa(parts.join(""));
+}"""
 
 
 FIND_ALL = """(() => {

@@ -2,16 +2,10 @@
 
 import numpy as np
 import pyvista as pv
-from browser.shown import FIND, GROUND, SIZE, Shown
+from browser.shown import GROUND, SIZE, Shown
 
 from workbench.views.mesh_view import MeshView
 from workbench.views.scene_actors import surface_actor
-
-DRAWN = f"""(draw) => {{
-  const v = {FIND}.vsw;
-  draw(v);
-  return [...v.scene.pixels()].filter((_, i) => i % 4 === 0);
-}}"""
 
 
 def square():
@@ -25,7 +19,7 @@ def test_a_picture_at_rest_has_smooth_edges_and_a_moving_one_is_quick(serve, bro
     shown = Shown(serve, browser_page, square)
     assert shown.get("v.scene.slow")  # the browser of these tests draws with the processor
     smooth, quick = (
-        np.reshape(shown.tab.evaluate(f"() => ({DRAWN})((v) => v.draw({how}))"), (380, 420)) / 255
+        shown.array(f"(v.draw({how}), v.scene.pixels())", np.uint8).reshape(380, 420, 4)[..., 0] / 255
         for how in ("true", "false")
     )
     assert np.mean((smooth > 0.1) & (smooth < 0.9)) > 200 / smooth.size
@@ -42,6 +36,21 @@ def test_a_picture_at_rest_has_smooth_edges_and_a_moving_one_is_quick(serve, bro
     shown.get("v.draw(true)")
     again = np.frombuffer(shown.tab.locator("canvas[role=img]").screenshot(), np.uint8)
     np.testing.assert_array_equal(picture, again)
+
+
+def test_in_a_drag_edges_stay_quick_whatever_loses_the_focus(serve, browser_page):
+    shown = Shown(serve, browser_page, square)
+    shown.tab.evaluate("() => document.body.prepend(document.createElement('input'))")
+    shown.tab.locator("input").focus()
+    shown.tab.mouse.move(300, 700)
+    shown.tab.mouse.down()
+    shown.tab.evaluate("() => document.activeElement.blur()")
+    shown.get("v.draw(false)")
+    draws = shown.get("v.draws")
+    shown.tab.wait_for_timeout(500)
+    assert shown.get("v.draws") == draws
+    shown.tab.mouse.up()
+    shown.until("v.draws > a", draws)
 
 
 def test_another_size_has_smooth_edges_too(serve, browser_page):

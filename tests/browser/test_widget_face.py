@@ -58,9 +58,9 @@ def test_overlays_appear_on_demand_move_and_go(serve, browser_page):
     shown.call(lambda: face.param.update(show_surface=True, show_markers=True))
     shown.until('v.scene.actors.get("edges")?.deformer && v.motion.tracks[0].actors.includes("edges")')
     assert shares(shown)[0] > 0.1
-    before = shown.get('[...v.positions("surface")]')
+    before = shown.positions("surface").ravel()
     shown.get("v.clock.seek(0.9)")
-    assert np.abs(np.array(shown.get('[...v.positions("surface")]')) - before).max() > 3
+    assert np.abs(shown.positions("surface").ravel() - before).max() > 3
 
     shown.call(lambda: face.param.update(show_surface=False, show_markers=False, show_attachment=True))
     shown.until('v.scene.actors.get("attachment")?.visible && !v.scene.actors.get("surface").visible')
@@ -71,9 +71,9 @@ def test_overlays_appear_on_demand_move_and_go(serve, browser_page):
     shown.get("v.clock.seek(0.2)")
     shown.call(lambda: face.param.update(show_surface=True, show_attachment=False))
     shown.until('v.scene.actors.get("surface").visible && !v.scene.actors.get("attachment").visible')
-    there = np.array(shown.get('[...v.positions("surface")]')).reshape(-1, 3)
+    there = shown.positions("surface")
     shown.get("v.clock.seek(0.9), v.clock.seek(0.2)")
-    np.testing.assert_allclose(shown.get('[...v.positions("surface")]'), there.ravel(), atol=1e-4)
+    np.testing.assert_allclose(shown.positions("surface").ravel(), there.ravel(), atol=1e-4)
 
     shown.call(lambda: face.show(result("rbf")))
     shown.until('v.scene.actors.get("skin").deformer.constructor.name === "BasisDeformer"')

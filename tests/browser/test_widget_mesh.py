@@ -62,7 +62,7 @@ def test_a_new_motion_and_the_clock_change_the_pixels(serve, browser_page):
     shown.until("Math.abs(v.shown - 4.5) < 1e-9")
     assert shown.get("v.hash()") != before
     rest = np.frombuffer(actor["points"], np.float32).reshape(-1, 3)
-    placed = np.array(shown.get('[...v.positions("plate")]')).reshape(-1, 3)
+    placed = shown.positions("plate")
     np.testing.assert_allclose(placed, rest + np.array([0.45, 0, 0]), atol=1e-5)
     shown.call(lambda: shown.view.set_motion(10.0, displacements={"plate": 0 * away}))
     shown.until("v.ack >= 2")
@@ -86,7 +86,7 @@ def test_positions_on_the_gpu_are_those_of_numpy(serve, browser_page):
     for frame, pose in enumerate(poses):
         shown.get(f"v.clock.seek({frame} / 120)")
         shown.until(f"v.shown === {frame}")
-        found = np.array(shown.get('[...v.positions("skin")]')).reshape(-1, 3)
+        found = shown.positions("skin")
         wanted = head.vertices_mm + binding.response(np.arange(head.n_vertices)) @ pose.astype(float)
         assert np.abs(found - wanted).max() < 1e-3
         assert np.abs(wanted - head.vertices_mm).max() > 5
@@ -127,7 +127,7 @@ def test_latest_wins_and_everything_sent_is_acknowledged(serve, browser_page):
 
     shown.call(push)
     shown.until("v.waiting.length === 0 && v.ack >= 2")
-    last = np.array(shown.get('[...v.positions("plate")]')).reshape(-1, 3)
+    last = shown.positions("plate")
     np.testing.assert_allclose(last, rest - np.array([0, 0, 3.9]), atol=1e-5)
     assert shown.view.dropped == 38
     assert len(shown.get("v.changes")) == 2

@@ -24,7 +24,7 @@ def drawn(binding, moved):
 
 
 def positions(shown, name):
-    return np.array(shown.get(f'[...v.positions("{name}")]')).reshape(-1, 3)
+    return shown.positions(name)
 
 
 def test_patches_on_the_gpu_are_those_of_the_processor(heads, serve, browser_page):

@@ -22,7 +22,7 @@ SAME = [
     (select_greedy, "selection", 7),
     (select_viterbi, "selection", 8),
     (align_fragments, "alignment", 4),
-    (blend_pieces, "blend", 8),
+    (blend_pieces, "blend", 9),
     (FIT["greedy"], "blend", 4),
     (FIT["viterbi"], "blend", 4),
     (FIT["greedy"], "selection", 2),

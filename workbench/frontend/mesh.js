@@ -3,6 +3,7 @@
  * change that Python sends is acknowledged when it has been drawn, so that Python never sends faster than this
  * draws. Without WebGL2 the server draws pictures in its place.
  */
+import { hurryOnTouch } from "./comms.js";
 import { View } from "./mesh_view.js";
 import { Stills } from "./stills.js";
 
@@ -57,6 +58,7 @@ export function renderMesh({ model, el }) {
     return box;
   }
   canvas.vsw = view;
+  hurryOnTouch();
   connect(model, canvas, box, view);
   model.send_msg({ type: "ready" });
   return box;

@@ -7,7 +7,14 @@ for (const [type, value] of [
   ["pointercancel", false],
   ["blur", false],
 ]) {
-  globalThis.addEventListener?.(type, () => (down = value), true);
+  globalThis.addEventListener?.(
+    type,
+    (event) => {
+      // an element that loses the focus, as one does when another is pressed, is not the window that does
+      if (type !== "blur" || event.target === globalThis) down = value;
+    },
+    true,
+  );
 }
 
 /** @returns {boolean} */

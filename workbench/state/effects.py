@@ -112,7 +112,7 @@ def _dot(result: Result, join: int) -> dict[str, object]:
 
 def blend_settings(request: Request) -> dict[str, Any]:
     """Return the blend settings that are the same for every curve of the effect plot."""
-    own = {"weighting", "shape", "overlap_s", "curve_weights", "inertial_s"}
+    own = {"weighting", "shape", "overlap_s", "curve_weights", "inertial_s", "weighting_at"}
     return dict(request.config.blend.model_dump(exclude=own))
 
 

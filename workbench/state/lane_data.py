@@ -12,7 +12,7 @@ import numpy as np
 from corpus_tools import synthesis
 from corpus_tools.core import ChosenUnit, FloatArray, Selection, Utterance
 from corpus_tools.speech import PhoneSet, lip_aperture_mm
-from corpus_tools.synthesis import DEFAULT_CURVE, stand_ins_told, weighting
+from corpus_tools.synthesis import DEFAULT_CURVE, stand_ins_told, weighting, weightings_of_joins
 from workbench.state.effects import Effects
 from workbench.state.picks import pin_at
 from workbench.state.stages import Result
@@ -193,7 +193,8 @@ class FragmentDetails:
     backoff : tuple of (target phone, phone spoken instead)
     join : dict or None
         The join with the fragment before it, as of :func:`joins_data`, with `gap_mm_s`, and of that fragment
-        `before` (its id), `before_text` and `before_slot`; `inertial`: the duration of an inertial join, s.
+        `before` (its id), `before_text` and `before_slot`; `inertial`: the duration of an inertial join, s;
+        `g`: its weighting function where the config makes exceptions, else empty.
     """
 
     index: int
@@ -223,8 +224,16 @@ def _join_before(result: Result, selection: Selection, index: int) -> dict[str, 
     before = selection.chosen[index - 1].unit.recording
     slots = source_slots(tuple(c.unit.recording for c in selection.chosen))
     blend = result.request.config.blend
+    classes = result.request.corpus.phones.display_classes
+    own = weightings_of_joins(
+        [j.phone for j in result.trajectory.joins],
+        (blend.weighting, blend.shape),
+        blend.weighting_at,
+        classes,
+    )
     return {
         **joins_data(result)[index - 1],
+        "g": own[index - 1][0] if blend.mode != "inertial" and blend.weighting_at else "",
         "inertial": blend.inertial_s if blend.mode == "inertial" else None,
         "gap_mm_s": join.gap_mm_s,
         "before": before,

@@ -6,7 +6,7 @@ from corpus_tools.core import counted
 from workbench.state import Effects, Result, stand_ins
 from workbench.state.said import contacts_of, missed_text
 
-__all__ = ["beside_of", "head_text", "lower_text", "missing_text"]
+__all__ = ["beside_of", "head_text", "lower_text", "missing_text", "overlap_label"]
 
 
 BESIDE = ("female", "male", "child")
@@ -49,3 +49,13 @@ def lower_text(effects: Effects | None, result: Result, join: int) -> str:
     if best is None or not ratio > 1.0 or best[2] > 0.95 * ratio:
         return ""
     return f"lower: {best[0]} at {1000 * best[1]:.0f} ms, {best[2]:.2f}"
+
+
+def overlap_label(result: Result | None) -> str:
+    """Return the label of the overlap's slider, with how many joins the rule keeps shorter than asked."""
+    label = "Longest overlap, ms"
+    if result is None or result.request.config.blend.mode == "inertial":
+        return label
+    joins, asked_s = result.trajectory.joins, result.request.config.blend.overlap_s
+    shorter = sum(join.overlap_s < asked_s - 0.0005 for join in joins)
+    return f"{label} ({shorter} of {counted(len(joins), 'join')} shorter)" if shorter else label

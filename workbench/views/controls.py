@@ -7,6 +7,7 @@ from typing import Any
 import panel_material_ui as pmui
 import param
 
+from workbench.views.prompt import prompt
 from workbench.views.theme import control_theme
 
 __all__ = ["Controls", "button", "preset_buttons", "select", "slider", "text_field"]
@@ -36,8 +37,7 @@ class Controls:
         """Return ``kind(**values)`` in the theme."""
         dark = self._session.theme == "dark"
         control = kind(theme_config=control_theme(), dark_theme=dark, **values)
-        # Panel would wait 50 ms for more changes; here the newest wins anyway
-        control._priority_changes = ["value", "value_input"]
+        prompt(control, "value", "value_input")
         self._made.append(control)
         return control
 

@@ -56,6 +56,8 @@ def _join_html(details: FragmentDetails, colours: list[str], frames_hz: float) -
     peak = "unknown" if ratio is None else f"{ratio:.2f} × natural p95"
     frames = round(join["overlap"] * frames_hz)
     over, inertial = f"{join['overlap']:.3f} s, {counted(frames, 'frame')}", join["inertial"]
+    if join.get("g"):
+        over += f", g(u) {join['g']}"
     if inertial:
         over = f"in {inertial:.3f} s to either side"
         if join["overlap"] < 2 * inertial - 0.001:  # at an end of the sentence

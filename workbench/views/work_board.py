@@ -18,7 +18,7 @@ from workbench.state import (
     lane_text,
     weighting_samples,
 )
-from workbench.views.board_texts import beside_of, head_text, lower_text, missing_text
+from workbench.views.board_texts import beside_of, head_text, lower_text, missing_text, overlap_label
 from workbench.views.controls import Controls, preset_buttons, slider
 from workbench.views.face import Face
 from workbench.views.head_actors import OVERLAYS
@@ -301,6 +301,7 @@ class BlendBoard(pn.viewable.Viewer):
             self.plot.param.update(effect=NO_EFFECT, title="", hint="")
             self.board.param.update(head_text="", lane_text="", held_out_text="", warning="")
             return
+        self.overlap.label = overlap_label(result)
         self.lane.show(result, self._session.other, self._session.side)
         self.lane.selected = self._session.selected
         self.board.param.update(
