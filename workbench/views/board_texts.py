@@ -58,4 +58,4 @@ def overlap_label(result: Result | None) -> str:
         return label
     joins, asked_s = result.trajectory.joins, result.request.config.blend.overlap_s
     shorter = sum(join.overlap_s < asked_s - 0.0005 for join in joins)
-    return f"{label} ({shorter} of {counted(len(joins), 'join')} shorter)" if shorter else label
+    return f"{label} ({shorter}/{len(joins)} less)" if shorter else label

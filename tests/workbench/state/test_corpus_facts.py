@@ -1,6 +1,10 @@
 """The corpus page: what a check found, worst first, and nothing of it invented before the check."""
 
+import copy
+import dataclasses
 import re
+
+import pytest
 
 from corpus_tools.pipeline import check_corpus
 from workbench.state import Session, corpus_facts, recording_rows
@@ -8,13 +12,24 @@ from workbench.views.corpus_page import CorpusOverview, checking_html, overview_
 from workbench.views.diphone_map import diphone_map_svg
 
 
-def test_facts_are_those_of_check_and_coverage(opened, corpus_folder):
+@pytest.fixture(scope="module")
+def checked(opened):
+    """Return the facts of the corpus and the fractions that were told on the way; made once."""
+    steps = []
+    return corpus_facts(opened, lambda fraction, what: steps.append(fraction)), steps
+
+
+@pytest.fixture
+def facts(checked):
+    """Return the facts, to be changed at will."""
+    return dataclasses.replace(checked[0], health=copy.deepcopy(checked[0].health))
+
+
+def test_facts_are_those_of_check_and_coverage(opened, checked, facts, corpus_folder):
     before = recording_rows(opened)
     assert {r.name for r in before} == {*opened.names, *opened.skipped}
     assert all(r.problems is None and r.gap_frames is None for r in before if r.usable)
-    steps = []
-    facts = corpus_facts(opened, lambda fraction, what: steps.append(fraction))
-    assert steps == sorted(steps)
+    assert checked[1] == sorted(checked[1])
     assert facts.health == check_corpus(corpus_folder)
     rows = recording_rows(opened, facts)
     known = {r["id"]: r for r in facts.health["recordings"]}
@@ -31,12 +46,12 @@ def test_facts_are_those_of_check_and_coverage(opened, corpus_folder):
     assert facts.cover["n_diphones"] == sum(len(r.utterance.labels) - 1 for r in opened.recordings)
 
 
-def test_the_page_shows_tallies_rows_and_every_diphone(opened):
+def test_the_page_shows_tallies_rows_and_every_diphone(opened, facts):
     session = Session()
     assert overview_html(session) == ""
     session.opened(opened)
     assert "Checking" in checking_html(session)
-    session.facts = corpus_facts(opened, lambda fraction, what: None)
+    session.facts = facts
     made = overview_html(session)
     assert checking_html(session) == ""
     assert made.count('data-action="speak"') == len(opened.names)
@@ -45,11 +60,10 @@ def test_the_page_shows_tallies_rows_and_every_diphone(opened):
     assert "&lt;img" in checking_html(session)
 
 
-def test_worst_first_is_said_only_where_something_is_wrong(opened):
+def test_worst_first_is_said_only_where_something_is_wrong(opened, facts):
     session = Session()
     session.opened(opened)
     assert "worst first" not in overview_html(session)
-    facts = corpus_facts(opened, lambda fraction, what: None)
     for row in facts.health["recordings"]:
         row["problems"] = []
     session.facts = facts
@@ -58,7 +72,7 @@ def test_worst_first_is_said_only_where_something_is_wrong(opened):
     assert "worst first" in overview_html(session)
 
 
-def test_progress_of_the_check_leaves_the_table_as_it_is(opened):
+def test_progress_of_the_check_leaves_the_table_as_it_is(opened, facts):
     session = Session()
     page = CorpusOverview(session, on_speak=lambda recording: None)
     assert not page.checking.visible
@@ -68,7 +82,7 @@ def test_progress_of_the_check_leaves_the_table_as_it_is(opened):
     session.check_doing = "cleaning, 40 %"
     assert "cleaning, 40 %" in page.checking.object
     assert (page.pane.html, written) == (made, [])
-    session.facts = corpus_facts(opened, lambda fraction, what: None)
+    session.facts = facts
     assert not page.checking.visible
     assert len(written) == 1
 
