@@ -30,7 +30,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from answering import wait_until_answers
 from browser import chromium
 
-from workbench.apps.serving import free_port
+from workbench.apps.options import free_port
 
 MESH = """(() => {
   const walk = (root) => {

@@ -24,7 +24,7 @@ from benchmarks.browser_latency import MESH, bars, measure_drag, playback, run, 
 from browser import chromium
 from browser.hosts import start_lab, start_panel, stop, write_notebook
 
-from workbench.apps.serving import free_port
+from workbench.apps.options import free_port
 
 OPENED = """\
 import panel as pn

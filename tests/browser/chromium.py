@@ -12,7 +12,7 @@ import panel as pn
 from answering import wait_until_answers
 from playwright.sync_api import BrowserContext, Page
 
-from workbench.apps.serving import free_port
+from workbench.apps.options import free_port
 
 CANDIDATES = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = (

@@ -11,7 +11,8 @@ from browser import chromium as shared
 from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 
 from corpus_tools.demo import simulate_corpus
-from workbench.apps.serving import Options, Workbench, free_port
+from workbench.apps.options import Options, free_port
+from workbench.apps.serving import Workbench
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,8 @@
 
 import pytest
 
-from workbench.apps.serving import Options, Workbench, free_port
+from workbench.apps.options import Options, free_port
+from workbench.apps.serving import Workbench
 
 
 @pytest.fixture

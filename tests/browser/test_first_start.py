@@ -6,7 +6,8 @@ import pytest
 from browser.shown import FIND
 
 from corpus_tools.demo import simulate_corpus
-from workbench.apps.serving import Options, Workbench, free_port
+from workbench.apps.options import Options, free_port
+from workbench.apps.serving import Workbench
 
 
 @pytest.fixture

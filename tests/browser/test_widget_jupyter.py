@@ -6,7 +6,7 @@ import pytest
 from browser.hosts import start_lab, start_panel, stop, write_notebook
 from browser.shown import FIND, FIND_ALL, wait_drawn
 
-from workbench.apps.serving import free_port
+from workbench.apps.options import free_port
 
 pytestmark = pytest.mark.slow
 

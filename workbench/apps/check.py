@@ -13,7 +13,8 @@ from bokeh.util.token import get_session_id
 
 from corpus_tools.core import WorkbenchError
 from workbench.apps.blend import BlendPage
-from workbench.apps.serving import Options, Workbench, free_port
+from workbench.apps.options import Options, free_port
+from workbench.apps.serving import Workbench
 
 __all__ = ["CheckReport", "check_run"]
 

@@ -12,6 +12,7 @@ from typer.core import TyperCommand
 import corpus_tools
 from corpus_tools.cli.common import PATH, OneSentence, guarded, say
 from corpus_tools.core import InputError
+from workbench.apps.options import Options, check_options
 from workbench.apps.stopping import StoppedBySignal
 
 __all__ = ["APPS", "app", "run"]
@@ -74,9 +75,6 @@ def workbench(
         return
     _check_app(app_name)
     with StoppedBySignal(noted=not check) as stop:
-        # panel takes a second or two to import: not before the arguments are known to be good
-        from workbench.apps.serving import Options, Workbench, check_options
-
         options = Options(
             corpus,
             host,
@@ -92,6 +90,8 @@ def workbench(
         if check:
             _check(options)
             return
+        from workbench.apps.serving import Workbench  # and Panel, which takes seconds to import
+
         server = Workbench(options)
         if port:
             say(f"The workbench is at http://{host}:{port}/ (stop it with Ctrl-C).", at_once=True)
@@ -99,11 +99,9 @@ def workbench(
         say("The workbench has stopped.")
 
 
-def _check(options: object) -> None:
+def _check(options: Options) -> None:
     from workbench.apps.check import check_run
-    from workbench.apps.serving import Options
 
-    assert isinstance(options, Options)
     report = check_run(options)
     say(
         f"The page answered after {report.page_s:.1f} s; {report.corpus}, sentence {report.sentence}: "

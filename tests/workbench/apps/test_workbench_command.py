@@ -14,7 +14,8 @@ from bokeh.server.views.ws import WSHandler
 from tornado.websocket import WebSocketClosedError
 
 from corpus_tools.core import InputError
-from workbench.apps.serving import Options, _expect_closed_tabs, check_options, free_port, read_password
+from workbench.apps.options import Options, check_options, free_port, read_password
+from workbench.apps.serving import _expect_closed_tabs
 
 
 def workbench(*arguments):
