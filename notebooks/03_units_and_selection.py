@@ -15,8 +15,9 @@
 #
 # Which pieces of captured speech are there, and which of them speak a sentence? Paper A takes sentences,
 # words, syllables and diphones as units and chooses the longest first. Here every run of phones is a
-# unit, found by one index, and a second search weighs what the longest-first rule does not see: how well
-# neighbours fit.
+# unit, found by one index (where a syllable begins is told by rules of the language: in English the longest
+# onset that a word may begin with), and a second search weighs what the longest-first rule does not see: how
+# well neighbours fit.
 
 # %%
 import os

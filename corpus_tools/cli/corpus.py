@@ -86,7 +86,7 @@ def check(corpus: Folder, json_: Json = False) -> None:
 
 
 def units(corpus: Folder, json_: Json = False) -> None:
-    """Count the units that the recordings give: sentences, words, diphones."""
+    """Count the units that the recordings give: sentences, words, syllables, diphones."""
     with progress_bar("reading") as progress:
         opened = open_corpus(corpus, progress=progress)
     views = unit_views(opened.inventory)

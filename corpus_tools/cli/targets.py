@@ -74,6 +74,7 @@ class SpeakRequest:
             phone_tier=corpus.description.phone_tier,
             word_tier=corpus.description.word_tier,
             source=str(self.labels),
+            language=corpus.description.language,
         )
         return target, {"labels": self.labels.name, "audio": self.audio.name if self.audio else None}
 

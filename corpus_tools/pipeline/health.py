@@ -85,6 +85,7 @@ def _read(description: CorpusDescription, item: RecordingFiles, phones: PhoneSet
             phone_tier=description.phone_tier,
             word_tier=description.word_tier,
             duration_s=entry.capture.times_s[-1],
+            language=description.language,
         )
     except WorkbenchError as error:
         entry.problems.append(str(error))

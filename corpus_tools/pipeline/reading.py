@@ -115,6 +115,7 @@ def _load(
                 phone_tier=description.phone_tier,
                 word_tier=description.word_tier,
                 duration_s=capture.times_s[-1],
+                language=description.language,
             )
         except WorkbenchError as error:
             skipped[item.id] = str(error)

@@ -18,6 +18,13 @@ from corpus_tools.speech.articulators import (
 from corpus_tools.speech.engines import ENGINES, Engine, SpeechRequest, prepare_espeak, speak_text
 from corpus_tools.speech.phone_maps import PhoneMap, phone_map, phone_map_names
 from corpus_tools.speech.phone_sets import PhoneSet, phone_set, phone_set_names
+from corpus_tools.speech.syllables import (
+    SyllableRules,
+    syllable_languages,
+    syllable_rules,
+    syllable_spans,
+    syllable_tier,
+)
 from corpus_tools.speech.text import MOST_CHARACTERS, SpokenWord, check_text, normalise_text
 from corpus_tools.speech.utterances import labelled_utterance, recorded_utterance, timed_phones
 
@@ -31,6 +38,7 @@ __all__ = [
     "PhoneSet",
     "SpeechRequest",
     "SpokenWord",
+    "SyllableRules",
     "aperture_functional",
     "bilabial_minima_mm",
     "bite_functional",
@@ -52,5 +60,9 @@ __all__ = [
     "prepare_espeak",
     "recorded_utterance",
     "speak_text",
+    "syllable_languages",
+    "syllable_rules",
+    "syllable_spans",
+    "syllable_tier",
     "timed_phones",
 ]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
 from corpus_tools.core import Audio, Interval, LabelError, Labels, Tier, Utterance
 from corpus_tools.speech.phone_sets import PhoneSet
+from corpus_tools.speech.syllables import with_syllables
 
 __all__ = ["END_SILENCE_S", "labelled_utterance", "recorded_utterance", "timed_phones"]
 
@@ -132,6 +134,7 @@ def _utterance(
     duration_s: float,
     source: str,
     engine: str,
+    language: str,
 ) -> Utterance:
     try:
         tier = labels.tier(phone_tier)
@@ -139,8 +142,9 @@ def _utterance(
         raise LabelError(f"{source}: {error}") from None
     words = _words(labels, word_tier, phones)
     text = " ".join(_VARIANT.sub("", i.text) for i in words) if words else ""
-    return Utterance(
-        name, text, timed_phones(tier, phones, duration_s, source), words=words, audio=audio, engine=engine
+    timed = timed_phones(tier, phones, duration_s, source)
+    return with_syllables(
+        Utterance(name, text, timed, words=words, audio=audio, engine=engine), language, phones
     )
 
 
@@ -153,6 +157,7 @@ def recorded_utterance(
     phone_tier: str = "phones",
     word_tier: str = "words",
     duration_s: float | None = None,
+    language: str = "en",
 ) -> Utterance:
     """Return what is said in a recording as a target utterance (engine "recorded").
 
@@ -168,11 +173,15 @@ def recorded_utterance(
     duration_s : float
         Length of the motion, s: that of the utterance when there is no audio, or when the audio goes on for
         more than :data:`LONGER_S` after motion and labels.
+    language : str
+        Of the corpus: that of the syllables.
     """
     length = labels.end_s if duration_s is None else duration_s
     if audio:
         length = _sounding_s(audio, max(length, labels.end_s))
-    return _utterance(name, labels, audio, phones, phone_tier, word_tier, length, f"'{name}'", "recorded")
+    return _utterance(
+        name, labels, audio, phones, phone_tier, word_tier, length, f"'{name}'", "recorded", language
+    )
 
 
 def labelled_utterance(
@@ -184,6 +193,7 @@ def labelled_utterance(
     phone_tier: str = "phones",
     word_tier: str = "words",
     source: str | None = None,
+    language: str = "en",
 ) -> Utterance:
     """Return a target utterance from a label file (engine "labels"); without audio it is silent.
 
@@ -206,8 +216,10 @@ def labelled_utterance(
             f"{where} goes on to {labels.end_s:.3f} s but the audio ends at {audio.duration_s:.3f} s; "
             "give the sound that was labelled."
         )
-    utterance = _utterance(name, labels, audio, phones, phone_tier, word_tier, length, where, "labels")
+    utterance = _utterance(
+        name, labels, audio, phones, phone_tier, word_tier, length, where, "labels", language
+    )
     if audio is not None:
         return utterance
     silent = Audio(np.zeros(round(16000 * utterance.duration_s), np.float32), 16000)
-    return Utterance(name, utterance.text, utterance.phones, utterance.words, None, silent, "labels")
+    return replace(utterance, audio=silent)

@@ -1,7 +1,7 @@
 """Paper A, from its data to its future work: what it says of its method, in its order, and the test of each.
 
 Equations (1) to (3), the selection algorithm, the grammar, figures 2 to 5, and what the paper calls future
-work and we built; syllable units are not. What it leaves open, and what we chose for which reason, is
+work and we built. What it leaves open, and what we chose for which reason, is
 decision 013.
 """
 
@@ -43,6 +43,7 @@ from tests.papers.paper_a.preprocessing import (
 from tests.papers.paper_a.units import (
     test_every_sentence_and_every_diphone_of_the_recordings_is_a_unit,
     test_words_are_units_from_the_first_phone_to_the_last,
+    test_syllables_are_units_within_their_word,
     test_larger_fragments_leave_fewer_joins_than_diphones_alone,
 )
 

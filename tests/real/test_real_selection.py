@@ -66,6 +66,8 @@ def test_leave_one_out_coverage_of_the_phones_as_they_are_used(recordings):
     views = unit_views(inventory).as_dict()
     assert views["sentence_units"] == 203
     assert views["word_types"] > 40
+    assert 203 * 5 < views["syllable_units"] < 203 * 7  # six words each; some letters are one phone
+    assert views["syllable_types"] > 40
     assert views["diphone_types"] == data["n_diphone_types"]
 
 

@@ -29,6 +29,7 @@ from corpus_tools.speech.engines.request import ENGINES, Engine, SpeechRequest
 from corpus_tools.speech.engines.timing import SpokenPhone, spoken_phones
 from corpus_tools.speech.phone_maps import PhoneMap, phone_map
 from corpus_tools.speech.phone_sets import PhoneSet
+from corpus_tools.speech.syllables import with_syllables
 from corpus_tools.speech.text import SpokenWord, normalise_text
 
 __all__ = ["END_SILENCE_S", "check_espeak", "espeak_version", "prepare_espeak", "speak_espeak"]
@@ -255,7 +256,7 @@ def speak_espeak(request: SpeechRequest, phones: PhoneSet) -> Utterance:
     if not any(p.phone != phones.silence for p in spoken):
         raise InputError(f"The voice eSpeak NG says nothing for '{request.text.strip()[:60]}'; write words.")
     tier, word_tier = _tiers(spoken, words, len(samples) / rate_hz, phones.silence)
-    return Utterance(
+    made = Utterance(
         request.name,
         " ".join(w.text for w in words),
         tier,
@@ -263,6 +264,7 @@ def speak_espeak(request: SpeechRequest, phones: PhoneSet) -> Utterance:
         audio=_padded(samples, rate_hz),
         engine="espeak",
     )
+    return with_syllables(made, request.language, phones)
 
 
 ENGINES.add(

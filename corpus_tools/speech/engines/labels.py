@@ -22,6 +22,7 @@ def speak_labels(request: SpeechRequest, phones: PhoneSet) -> Utterance:
         phone_tier=request.phone_tier,
         word_tier=request.word_tier,
         source=request.source,
+        language=request.language,
     )
 
 
@@ -37,6 +38,7 @@ def speak_recorded(request: SpeechRequest, phones: PhoneSet) -> Utterance:
         phone_tier=request.phone_tier,
         word_tier=request.word_tier,
         duration_s=request.duration_s,
+        language=request.language,
     )
 
 

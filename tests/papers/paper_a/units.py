@@ -5,8 +5,9 @@ import itertools
 from hypothesis import given
 from hypothesis import strategies as st
 
-from corpus_tools.core import Interval, Tier
+from corpus_tools.core import Interval, Labels, Recording, Tier
 from corpus_tools.fragments import build_inventory, find_spans, unit_views
+from corpus_tools.speech import phone_set, recorded_utterance
 from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
 from tests.strategies.inventories import SmallPhoneSet, corpora, recording
 
@@ -29,6 +30,22 @@ def test_words_are_units_from_the_first_phone_to_the_last():
         "to": ["a:4-5"],
     }
     assert len(find_spans(inventory, ["P", "A", "T"])) == 1
+
+
+def test_syllables_are_units_within_their_word():
+    phones = ["SIL", "AH", "W", "EY", "EH", "K", "S", "T", "R", "AH", "SIL"]
+    rows = tuple(Interval(0.1 * k, 0.1 * (k + 1), p) for k, p in enumerate(phones))
+    words = Tier("words", (Interval(0.1, 0.4, "away"), Interval(0.4, 1.0, "extra")))
+    labels = Labels((Tier("phones", rows), words), 0.0, 1.1)
+    spoken = recorded_utterance("a", labels, None, phone_set("arpabet"))
+    inventory = build_inventory([Recording(spoken, recording("a", ["SIL", "P", "SIL"]).capture)])
+    views = unit_views(inventory)
+    assert {s: [u.key for u in units] for s, units in views.syllables.items()} == {
+        "W-EY": ["a:2-3"],
+        "EH-K": ["a:4-5"],
+        "S-T-R-AH": ["a:6-9"],
+    }
+    assert len(find_spans(inventory, ["S", "T", "R", "AH"])) == 1
 
 
 @given(corpora(least=2), st.integers(0, 1000))
