@@ -80,6 +80,15 @@ class SelectionSettings(Section):
     context: float = Field(
         0.3, ge=0, le=1e6, description="Weight of the neighbours left and right of the unit."
     )
+    position: float = Field(
+        0.0, ge=0, le=1e6, description="Weight of the place in syllable, word and phrase (beyond paper A)."
+    )
+    stress: float = Field(
+        0.0,
+        ge=0,
+        le=1e6,
+        description="Weight of the stress, where labels or voice tell it (beyond paper A).",
+    )
     backoff: float = Field(
         2.0, ge=0, le=1e6, description="Cost of a phone that its viseme class stands in for."
     )
@@ -89,6 +98,12 @@ class SelectionSettings(Section):
     join: float = Field(1.0, ge=0, le=1e6, description="Weight of the posture distance at a join.")
     velocity: float = Field(
         0.3, ge=0, le=1e6, description="Weight of the velocity distance at a join, relative to join."
+    )
+    acceleration: float = Field(
+        0.0, ge=0, le=1e6, description="Weight of the acceleration distance at a join, relative to join."
+    )
+    aperture: float = Field(
+        0.0, ge=0, le=1e6, description="Weight of the lip-aperture distance at a join, relative to join."
     )
     allow_backoff: bool = Field(True, description="Let a viseme class stand in where a diphone is missing.")
     components: int = Field(12, ge=1, le=60, description="Principal components of the join distance.")

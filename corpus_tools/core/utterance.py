@@ -23,6 +23,8 @@ class Utterance:
     phones : Tier
         Contiguous intervals in the corpus's phone set; silence first and last.
     words, syllables : Tier or None
+    stress : tuple of int, or None
+        Of each phone: 0 none, 1 primary, 2 secondary, -1 unknown (consonants, silence); None: nothing known.
     audio : Audio or None
     engine : str
         Where sound and times come from: "recorded", "labels", "espeak", ...
@@ -35,6 +37,7 @@ class Utterance:
     syllables: Tier | None = None
     audio: Audio | None = None
     engine: str = "recorded"
+    stress: tuple[int, ...] | None = None
 
     @property
     def duration_s(self) -> float:

@@ -66,6 +66,8 @@ def fit_greedy(
     resampling: Resampling = "inverse",
     duration: Weight = 1.0,
     context: Weight = 0.3,
+    position: Weight = 0.0,
+    stress: Weight = 0.0,
 ) -> Predictor:
     """Index the recordings for the longest-first search of paper A.
 
@@ -81,12 +83,12 @@ def fit_greedy(
         As of :func:`~corpus_tools.synthesis.blend_pieces`.
     warp, resampling
         As of :func:`~corpus_tools.synthesis.align_fragments`.
-    duration, context : float
-        Weights of timing and context among fragments of the same length.
+    duration, context, position, stress : float
+        Weights of timing, context, place and stress among fragments of the same length.
     """
     blend: dict[str, Any] = {"mode": mode, "weighting": weighting, "overlap_s": overlap_s}
     blend |= {"inertial_s": inertial_s, "warp": warp, "resampling": resampling}
-    weights = {"duration": duration, "context": context}
+    weights = {"duration": duration, "context": context, "position": position, "stress": stress}
     return _fit(training, "greedy", weights, blend, remove_bias, closure)
 
 
@@ -102,9 +104,13 @@ def fit_viterbi(
     resampling: Resampling = "inverse",
     duration: Weight = 1.0,
     context: Weight = 0.3,
+    position: Weight = 0.0,
+    stress: Weight = 0.0,
     backoff: Weight = 2.0,
     join: Weight = 1.0,
     velocity: Weight = 0.3,
+    acceleration: Weight = 0.0,
+    aperture: Weight = 0.0,
     per_join: Weight = 0.0,
 ) -> Predictor:
     """Index the recordings for the search of the cheapest path.
@@ -113,8 +119,9 @@ def fit_viterbi(
     """
     blend: dict[str, Any] = {"mode": mode, "weighting": weighting, "overlap_s": overlap_s}
     blend |= {"inertial_s": inertial_s, "warp": warp, "resampling": resampling}
-    weights = {"duration": duration, "context": context, "backoff": backoff, "join": join}
-    weights |= {"velocity": velocity, "per_join": per_join}
+    weights = {"duration": duration, "context": context, "position": position, "stress": stress}
+    weights |= {"backoff": backoff, "join": join, "velocity": velocity, "acceleration": acceleration}
+    weights |= {"aperture": aperture, "per_join": per_join}
     return _fit(training, "viterbi", weights, blend, remove_bias, closure)
 
 

@@ -37,6 +37,8 @@ class PhoneMap:
         Keys are rows of symbols; the longest that fits is taken.
     marks : tuple of str
         Stress and length marks, stripped wherever they stand.
+    stresses : mapping of mark -> 1 or 2
+        Those of them that say primary or secondary stress.
     pauses, stops : frozenset of str
         Symbols of silence, and of stops and affricates.
     languages : tuple of str
@@ -47,6 +49,7 @@ class PhoneMap:
     phones: PhoneSet
     symbols: Mapping[tuple[str, ...], tuple[str, ...]]
     marks: tuple[str, ...]
+    stresses: Mapping[str, int]
     pauses: frozenset[str]
     stops: frozenset[str]
     languages: tuple[str, ...]
@@ -56,6 +59,10 @@ class PhoneMap:
         for mark in self.marks:
             symbol = symbol.replace(mark, "")
         return symbol
+
+    def stress(self, symbol: str) -> int:
+        """Return the stress that the marks of a symbol say: 1 primary, 2 secondary, 0 none."""
+        return next((stress for mark, stress in self.stresses.items() if mark in symbol), 0)
 
     def is_pause(self, symbol: str) -> bool:
         """Return whether a symbol is silence."""
@@ -154,6 +161,7 @@ def phone_map(notation: str, phones: str) -> PhoneMap:
         phones=phone_set(phones),
         symbols=MappingProxyType(symbols),
         marks=tuple(data["marks"]),
+        stresses=MappingProxyType(dict(data["stresses"])),
         pauses=frozenset(data["pauses"]),
         stops=frozenset(data["stops"]),
         languages=tuple(data["languages"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from dataclasses import replace
 
 import numpy as np
@@ -117,6 +118,18 @@ def _with_leading_silence(rows: list[Interval], silence: str) -> list[Interval]:
     return [Interval(first.start_s, cut, silence), Interval(cut, first.end_s, first.text), *rows[1:]]
 
 
+def _stress(tier: Tier, timed: Tier, phones: PhoneSet) -> tuple[int, ...] | None:
+    """Return the stress that the digits of labels tell of each phone, -1 without one; None without any."""
+    if not phones.strip_stress:
+        return None
+    starts = [i.start_s for i in tier]
+    texts = [tier.intervals[max(0, bisect_right(starts, p.centre_s) - 1)].text.strip() for p in timed]
+    vowels = (p.text in phones.vowels for p in timed)
+    told = zip(texts, vowels, strict=True)
+    found = tuple(int(text[-1]) if vowel and text.endswith(("0", "1", "2")) else -1 for text, vowel in told)
+    return found if max(found) >= 0 else None
+
+
 def _words(labels: Labels, word_tier: str, phones: PhoneSet) -> Tier | None:
     if word_tier not in labels.names:
         return None
@@ -143,9 +156,9 @@ def _utterance(
     words = _words(labels, word_tier, phones)
     text = " ".join(_VARIANT.sub("", i.text) for i in words) if words else ""
     timed = timed_phones(tier, phones, duration_s, source)
-    return with_syllables(
-        Utterance(name, text, timed, words=words, audio=audio, engine=engine), language, phones
-    )
+    stress = _stress(tier, timed, phones)
+    made = Utterance(name, text, timed, words=words, audio=audio, engine=engine, stress=stress)
+    return with_syllables(made, language, phones)
 
 
 def recorded_utterance(

@@ -18,8 +18,8 @@ import numpy as np
 
 from corpus_tools.core import BoolArray, InputError, IntArray, NoUnitError, UnitRef
 from corpus_tools.fragments import diphone_keys, diphone_rows, recording_mask
-from corpus_tools.synthesis.costs import Target
 from corpus_tools.synthesis.model import SelectionModel
+from corpus_tools.synthesis.target import Target
 from corpus_tools.synthesis.visible import SAME_CLASS, visible_losses
 
 __all__ = ["Candidates", "Pin", "find_candidates", "run_lengths"]

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from corpus_tools.core import Capture, CorpusError, FloatArray, MotionError, UnitInventory, frozen
+from corpus_tools.speech import lip_aperture_mm
 
 __all__ = ["JoinFeatures", "PostureBasis", "join_features", "posture_basis", "principal_basis"]
 
@@ -128,7 +129,7 @@ def _whole_frames(capture: Capture, names: tuple[str, ...]) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JoinFeatures:
-    """Posture and velocity at the centre of every phone of the inventory, each scaled by its own spread.
+    """Posture and how it moves at the centre of every phone of the inventory, each scaled by its own spread.
 
     Attributes
     ----------
@@ -136,17 +137,23 @@ class JoinFeatures:
         In units of `position_sd_mm`: a distance of 1 is the root mean square distance from the mean.
     velocity : (n_phones, n_components) float64
         In units of `velocity_sd_mm_s`.
+    acceleration : (n_phones, n_components) float64
+        In units of its rms length over the phones.
+    aperture : (n_phones,) float64
+        Signed lip aperture in units of its standard deviation over the phones; 0 without lips.
     position_sd_mm, velocity_sd_mm_s : float
     """
 
     position: FloatArray
     velocity: FloatArray
+    acceleration: FloatArray
+    aperture: FloatArray
     position_sd_mm: float
     velocity_sd_mm_s: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", frozen(self.position))
-        object.__setattr__(self, "velocity", frozen(self.velocity))
+        for key in ("position", "velocity", "acceleration", "aperture"):
+            object.__setattr__(self, key, frozen(getattr(self, key)))
 
 
 def join_features(inventory: UnitInventory, basis: PostureBasis) -> JoinFeatures:
@@ -161,7 +168,8 @@ def join_features(inventory: UnitInventory, basis: PostureBasis) -> JoinFeatures
     """
     centres = 0.5 * (inventory.starts_s + inventory.ends_s)
     shape = (inventory.n_phones, len(basis.components))
-    position, velocity = np.zeros(shape), np.zeros(shape)
+    position, velocity, acceleration = (np.zeros(shape) for _ in range(3))
+    aperture = np.zeros(inventory.n_phones)
     for index, recording in enumerate(inventory.recordings):
         rows = slice(int(inventory.offsets[index]), int(inventory.offsets[index + 1]))
         capture = recording.capture
@@ -174,10 +182,19 @@ def join_features(inventory: UnitInventory, basis: PostureBasis) -> JoinFeatures
         times = capture.times_s
         spline = CubicSpline(times, weights)
         at = np.clip(centres[rows], times[0], times[-1])
-        position[rows], velocity[rows] = spline(at), spline(at, 1)
+        position[rows], velocity[rows], acceleration[rows] = spline(at), spline(at, 1), spline(at, 2)
+        aperture[rows] = np.interp(at, times, lip_aperture_mm(capture.positions_mm, capture.names))
     position_sd = _spread(position - position.mean(axis=0))
     velocity_sd = _spread(velocity)
-    return JoinFeatures(position / position_sd, velocity / velocity_sd, position_sd, velocity_sd)
+    apart = aperture - aperture.mean()
+    return JoinFeatures(
+        position / position_sd,
+        velocity / velocity_sd,
+        acceleration / _spread(acceleration),
+        apart / _spread(apart[:, None]),
+        position_sd,
+        velocity_sd,
+    )
 
 
 def _spread(values: FloatArray) -> float:

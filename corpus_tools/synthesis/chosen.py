@@ -8,14 +8,9 @@ import numpy as np
 
 from corpus_tools.core import Candidate, ChosenUnit, Costs, FloatArray, IntArray, Selection, Utterance
 from corpus_tools.synthesis.backoff import Candidates
-from corpus_tools.synthesis.costs import (
-    JOIN_TERMS,
-    TARGET_TERMS,
-    Target,
-    join_costs,
-    span_costs,
-)
+from corpus_tools.synthesis.costs import join_costs, span_costs
 from corpus_tools.synthesis.model import SelectionModel
+from corpus_tools.synthesis.target import JOIN_TERMS, TARGET_TERMS, Target
 
 __all__ = ["path_cost", "path_runs", "selection_from_path"]
 
@@ -57,7 +52,7 @@ def selection_from_path(
         rows, lengths, terms = _ranked(model, target, candidates, (first, length, row, before), n_rejected)
         spans = zip(rows.tolist(), lengths.tolist(), strict=True)
         units = [model.inventory.unit(r, r + n) for r, n in spans]
-        costs = _named(terms, has_join=before is not None, has_each=target.each > 0)
+        costs = _named(terms, target.unasked, has_join=before is not None)
         chosen.append(
             ChosenUnit(
                 first=first,
@@ -112,12 +107,13 @@ def _priced(
     return terms
 
 
-def _named(terms: FloatArray, has_join: bool, has_each: bool) -> list[Costs]:
-    """Name the terms; a first unit has no join terms, and `each` stands only where it was asked for."""
+def _named(terms: FloatArray, unasked: frozenset[str], has_join: bool) -> list[Costs]:
+    """Name the terms; a first unit has no join terms, and some stand only where they were asked for."""
     n = len(TARGET_TERMS)
-    joins = (JOIN_TERMS if has_each else JOIN_TERMS[:2]) if has_join else ()
+    target = [(name, k) for k, name in enumerate(TARGET_TERMS) if name not in unasked]
+    join = [(name, n + k) for k, name in enumerate(JOIN_TERMS) if has_join and name not in unasked]
     return [
-        Costs(tuple(zip(TARGET_TERMS, v[:n], strict=True)), tuple(zip(joins, v[n:], strict=False)))
+        Costs(tuple((name, v[k]) for name, k in target), tuple((name, v[k]) for name, k in join))
         for v in terms.tolist()
     ]
 

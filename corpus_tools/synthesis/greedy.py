@@ -9,8 +9,9 @@ import numpy as np
 from corpus_tools.core import IntArray, Selection, UnitRef, Utterance
 from corpus_tools.synthesis.backoff import Candidates, Pin, find_candidates
 from corpus_tools.synthesis.chosen import selection_from_path
-from corpus_tools.synthesis.costs import Target, prepare_target, span_costs
+from corpus_tools.synthesis.costs import span_costs
 from corpus_tools.synthesis.model import SelectionModel
+from corpus_tools.synthesis.target import Target, prepare_target
 
 __all__ = ["greedy_as_printed", "greedy_path", "select_greedy"]
 
@@ -83,10 +84,14 @@ def select_greedy(
     n_rejected: int = 7,
     duration: float = 1.0,
     context: float = 0.3,
+    position: float = 0.0,
+    stress: float = 0.0,
     backoff: float = 2.0,
     flagged: float = 1.0,
     join: float = 1.0,
     velocity: float = 0.3,
+    acceleration: float = 0.0,
+    aperture: float = 0.0,
     per_join: float = 0.0,
 ) -> Selection:
     """Select units longest first (paper A section 5.1.1), its endless loop mended.
@@ -107,9 +112,9 @@ def select_greedy(
     allow_backoff : bool
     n_rejected : int
         Alternatives listed with each unit.
-    duration, context, backoff, flagged : float
+    duration, context, position, stress, backoff, flagged : float
         Weights of the target terms; `backoff` is the cost of a phone replaced by another of its class.
-    join, velocity, per_join : float
+    join, velocity, acceleration, aperture, per_join : float
         Weights of the join terms; they are reported, but do not steer this search.
 
     Returns
@@ -123,10 +128,14 @@ def select_greedy(
     weights = {
         "duration": duration,
         "context": context,
+        "position": position,
+        "stress": stress,
         "backoff": backoff,
         "flagged": flagged,
         "join": join,
         "velocity": velocity,
+        "acceleration": acceleration,
+        "aperture": aperture,
         "per_join": per_join,
     }
     target = prepare_target(model, utterance, **weights)

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from corpus_tools.core import FloatArray, IntArray, UnitInventory, frozen
+from corpus_tools.speech.places import phone_places, stress_codes
 from corpus_tools.synthesis.basis import JoinFeatures, PostureBasis, join_features, posture_basis
 
 __all__ = ["SHORTEST_S", "PhoneClasses", "SelectionModel", "prepare_selection"]
@@ -23,6 +24,10 @@ class PhoneClasses(Protocol):
     @property
     def silence(self) -> str:
         """The phone that stands for silence."""
+
+    @property
+    def vowels(self) -> frozenset[str]:
+        """The phones that a syllable has at its heart."""
 
     def viseme_class(self, phone: str) -> str:
         """Return the name of the viseme class of a phone."""
@@ -50,6 +55,9 @@ class SelectionModel:
         log of the duration in s.
     left, right : (n_phones,) int64
         Code before row r, and code after row r + 1; the code beyond an end is n_codes.
+    place, stress : (n_phones,) int64
+        Codes of :func:`~corpus_tools.speech.places.phone_places` and
+        :func:`~corpus_tools.speech.places.stress_codes`.
     flagged : (n_phones,) float64
         Share of the marker samples of diphone r that were filled or are doubtful.
     """
@@ -64,10 +72,12 @@ class SelectionModel:
     log_durations: FloatArray
     left: IntArray
     right: IntArray
+    place: IntArray
+    stress: IntArray
     flagged: FloatArray
 
     def __post_init__(self) -> None:
-        for key in ("classes", "left", "right"):
+        for key in ("classes", "left", "right", "place", "stress"):
             object.__setattr__(self, key, frozen(getattr(self, key), np.int64))
         for key in ("class_gaps", "log_durations", "flagged"):
             object.__setattr__(self, key, frozen(getattr(self, key)))
@@ -103,6 +113,7 @@ def prepare_selection(
     class_names = tuple(dict.fromkeys(names))
     left, right = _neighbours(inventory)
     joins = join_features(inventory, basis)
+    spoken = [r.utterance for r in inventory.recordings]
     classes = np.array([class_names.index(n) for n in names])
     return SelectionModel(
         inventory=inventory,
@@ -115,6 +126,8 @@ def prepare_selection(
         log_durations=np.log(np.maximum(inventory.ends_s - inventory.starts_s, SHORTEST_S)),
         left=left,
         right=right,
+        place=np.concatenate([phone_places(u, phone_set.vowels, phone_set.silence) for u in spoken]),
+        stress=np.concatenate([stress_codes(u) for u in spoken]),
         flagged=_flagged_share(inventory),
     )
 

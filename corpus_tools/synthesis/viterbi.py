@@ -9,9 +9,10 @@ import numpy as np
 from corpus_tools.core import FloatArray, InputError, IntArray, Selection, UnitRef, Utterance
 from corpus_tools.synthesis.backoff import Candidates, Pin, find_candidates, run_lengths
 from corpus_tools.synthesis.chosen import selection_from_path
-from corpus_tools.synthesis.costs import Target, join_matrix, prepare_target, span_costs
+from corpus_tools.synthesis.costs import join_matrix, span_costs
 from corpus_tools.synthesis.greedy import greedy_path
 from corpus_tools.synthesis.model import SelectionModel
+from corpus_tools.synthesis.target import Target, prepare_target
 
 __all__ = ["select_viterbi", "viterbi_path"]
 
@@ -71,7 +72,7 @@ def _pruned(
     n_phones = model.inventory.n_phones
     kept = greedy_path(model, target, candidates)
     back = run_lengths([n_phones - 1 - r for r in candidates.rows[::-1]], n_phones)[::-1]
-    bonus = TYPICAL_JOIN * (target.join + target.velocity) + target.each
+    bonus = TYPICAL_JOIN * target.typical_join + target.each
     rows, left = [], []
     for k, found in enumerate(candidates.rows):
         rank = costs[k] - bonus * (candidates.reach[k] + back[k])
@@ -96,10 +97,14 @@ def select_viterbi(
     prune: int | None = 100,
     duration: float = 1.0,
     context: float = 0.3,
+    position: float = 0.0,
+    stress: float = 0.0,
     backoff: float = 2.0,
     flagged: float = 1.0,
     join: float = 1.0,
     velocity: float = 0.3,
+    acceleration: float = 0.0,
+    aperture: float = 0.0,
     per_join: float = 0.0,
 ) -> Selection:
     """Select units at least total cost: timing, context, backoff, flagged frames, and joins.
@@ -112,11 +117,14 @@ def select_viterbi(
         As in :func:`~corpus_tools.synthesis.greedy.select_greedy`.
     prune : int, optional
         Candidates kept per diphone; all when None.
-    duration, context, backoff, flagged : float
-        Weights of the target terms.
-    join, velocity, per_join : float
-        Weights of the posture distance at a join, of the velocity distance relative to it, and the cost of
-        every join as such.
+    duration, context, position, stress, backoff, flagged : float
+        Weights of the target terms; `position`: place in syllable, word and phrase.
+    join : float
+        Weight of the posture distance at a join.
+    velocity, acceleration, aperture : float
+        Weights of the distance in velocity, acceleration and lip aperture, relative to `join`.
+    per_join : float
+        Cost of every join as such.
 
     Returns
     -------
@@ -132,10 +140,14 @@ def select_viterbi(
     weights = {
         "duration": duration,
         "context": context,
+        "position": position,
+        "stress": stress,
         "backoff": backoff,
         "flagged": flagged,
         "join": join,
         "velocity": velocity,
+        "acceleration": acceleration,
+        "aperture": aperture,
         "per_join": per_join,
     }
     target = prepare_target(model, utterance, **weights)

@@ -19,6 +19,7 @@ class SmallPhoneSet:
     """Six phones in three viseme classes, and silence."""
 
     silence: str = SILENCE
+    vowels: frozenset[str] = frozenset({"A", "O"})
 
     def viseme_class(self, phone: str) -> str:
         try:

@@ -1,12 +1,14 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from corpus_tools.core import InputError, LabelError, NoUnitError, Recording, UnitRef
+from corpus_tools.core import InputError, Interval, LabelError, NoUnitError, Recording, Tier, UnitRef
 from corpus_tools.fragments import build_inventory
 from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
-from corpus_tools.synthesis.costs import TARGET_TERMS, prepare_target, span_costs
+from corpus_tools.synthesis.costs import join_costs, join_matrix, span_costs
+from corpus_tools.synthesis.target import JOIN_TERMS, TARGET_TERMS, prepare_target
 from tests.strategies.inventories import SmallPhoneSet, capture, recording, simulated_recordings, utterance
 
 SEARCHES = [select_greedy, select_viterbi]
@@ -196,3 +198,81 @@ def test_settings_are_kept_with_the_selection():
     settings = dict(selection.settings)
     assert (settings["prune"], settings["context"], settings["allow_backoff"]) == (7, 0.6, True)
     assert selection.method == "viterbi"
+
+
+WORDS = Tier("words", (Interval(0.1, 0.3, "pa"), Interval(0.3, 0.5, "ta")))
+
+
+def spoken_as(name, words=None, stress=None):
+    made = recording(name, ["SIL", "P", "A", "T", "A", "SIL"], words=words)
+    return Recording(replace(made.utterance, stress=stress), made.capture)
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_a_fragment_from_the_same_place_in_its_word_is_taken(search):
+    one_word = Tier("words", (Interval(0.1, 0.5, "pata"),))
+    model = model_of(spoken_as("a", one_word), spoken_as("b", WORDS))
+    target = utterance("t", ["SIL", "P", "A", "T", "A", "SIL"], words=WORDS)
+    (chosen,) = search(model, target, position=1.0).chosen
+    assert chosen.unit.recording == "b"
+    assert dict(chosen.costs.target)["place"] == 0
+    assert "place" not in dict(search(model, target).chosen[0].costs.target)
+    (other,) = [r for r in chosen.rejected if r.unit.recording == "a"]
+    # the inner A and the inner T each differ at one edge of their word; a phone counts in both its diphones
+    assert dict(other.costs.target)["place"] == pytest.approx(4 * 0.5 / 3)
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_a_fragment_with_the_same_stress_is_taken_and_unknown_stress_matches_all(search):
+    iamb, trochee = (-1, -1, 0, -1, 1, -1), (-1, -1, 1, -1, 0, -1)
+    model = model_of(spoken_as("a", stress=trochee), spoken_as("b", stress=iamb), spoken_as("c"))
+    target = replace(utterance("t", ["SIL", "P", "A", "T", "A", "SIL"]), stress=iamb)
+    (chosen,) = search(model, target, stress=0.5).chosen
+    assert chosen.unit.recording == "b"
+    costs = {r.unit.recording: dict(r.costs.target)["stress"] for r in chosen.rejected}
+    assert costs == {"a": pytest.approx(0.5 * 4), "c": 0.0}
+
+
+def test_a_join_costs_the_distance_of_acceleration_and_lip_aperture_where_asked_for():
+    model = model_of(recording("a", ["SIL", "P", "A", "SIL"]), recording("b", ["SIL", "T", "A", "P", "SIL"]))
+    target = utterance("t", ["SIL", "P", "A", "P", "SIL"])
+    first, second = select_greedy(model, target, join=2.0, acceleration=0.5, aperture=0.25).chosen
+    left, right = model.inventory.rows(first.unit)[1], model.inventory.rows(second.unit)[0]
+    joins, costs = model.joins, dict(second.costs.join)
+    assert costs["acceleration"] == pytest.approx(
+        2.0 * 0.5 * np.linalg.norm(joins.acceleration[left] - joins.acceleration[right])
+    )
+    assert costs["aperture"] == pytest.approx(2.0 * 0.25 * abs(joins.aperture[left] - joins.aperture[right]))
+    assert min(costs["acceleration"], costs["aperture"]) > 0
+
+
+def test_join_features_are_in_units_of_their_spread():
+    joins = model_of(*simulated_recordings(8, 1)).joins
+    assert (joins.acceleration**2).sum(axis=1).mean() == pytest.approx(1.0)
+    assert (joins.aperture.mean(), joins.aperture.std()) == (
+        pytest.approx(0.0, abs=1e-12),
+        pytest.approx(1.0),
+    )
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_terms_that_are_not_asked_for_are_not_listed(search):
+    model = model_of(recording("a", ["SIL", "P", "A", "SIL"]), recording("b", ["SIL", "A", "T", "SIL"]))
+    target = utterance("t", ["SIL", "P", "A", "T", "SIL"])
+    terms = ("position", "stress", "acceleration", "aperture", "per_join")
+    plain = search(model, target, **dict.fromkeys(terms, 0)).chosen[1].costs
+    assert tuple(dict(plain.target)) == ("timing", "context", "backoff", "flagged")
+    assert tuple(dict(plain.join)) == ("position", "velocity")
+    asked = (
+        search(model, target, position=1, stress=1, acceleration=1, aperture=1, per_join=1).chosen[1].costs
+    )
+    assert (tuple(dict(asked.target)), tuple(dict(asked.join))) == (TARGET_TERMS, JOIN_TERMS)
+
+
+def test_the_matrix_of_joins_is_the_costs_of_its_pairs():
+    model = model_of(*simulated_recordings(8, 1))
+    weights = dict(join=2.0, velocity=0.5, acceleration=0.25, aperture=0.75, per_join=0.1)
+    target = prepare_target(model, model.inventory.recordings[0].utterance, **weights)
+    left, right = np.arange(3, 9), np.arange(20, 31)
+    pairs = join_costs(model, target, np.repeat(left, len(right)), np.tile(right, len(left))).sum(axis=1)
+    assert join_matrix(model, target, left, right).ravel() == pytest.approx(pairs)

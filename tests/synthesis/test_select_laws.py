@@ -12,12 +12,15 @@ from corpus_tools.fragments import build_inventory, coverage
 from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
 from corpus_tools.synthesis.backoff import find_candidates
 from corpus_tools.synthesis.chosen import path_cost
-from corpus_tools.synthesis.costs import prepare_target
+from corpus_tools.synthesis.target import prepare_target
 from corpus_tools.synthesis.viterbi import viterbi_path
 from tests.strategies.inventories import SmallPhoneSet, corpora, covered_target, targets
 
 SEARCHES = [select_greedy, select_viterbi]
-WEIGHTS = ("duration", "context", "backoff", "flagged", "join", "velocity", "per_join")
+WEIGHTS = (
+    *("duration", "context", "position", "stress", "backoff", "flagged"),
+    *("join", "velocity", "acceleration", "aperture", "per_join"),
+)
 
 
 def model_of(recordings):

@@ -14,10 +14,14 @@ __all__ = ["bans_html", "details_html", "options_html"]
 _TERMS = {
     "timing": "timing",
     "context": "context",
+    "place": "place",
+    "stress": "stress",
     "backoff": "stand-in",
     "flagged": "doubtful",
     "position": "join posture",
     "velocity": "join velocity",
+    "acceleration": "join acceleration",
+    "aperture": "join lip aperture",
     "each": "each join",
 }
 _DOUBTS = ("backoff", "flagged")
@@ -25,7 +29,7 @@ _COLUMNS = (
     ("At, s", "Where it begins in its own recording"),
     ("Timing", "Cost: how far its phones are from the durations wanted"),
     ("Context", "Cost: neighbours other than those it is to have"),
-    ("Join", "Cost: posture and velocity where it meets the fragment before"),
+    ("Join", "Cost: posture and how it moves where it meets the fragment before"),
 )
 
 

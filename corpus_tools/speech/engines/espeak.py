@@ -206,6 +206,11 @@ def _tiers(
     return Tier("phones", tuple(rows)), Tier("words", tuple(spans))
 
 
+def _stress(spoken: Sequence[SpokenPhone], tier: Tier) -> tuple[int, ...]:
+    told = {p.start_s + END_SILENCE_S: p.stress for p in spoken}
+    return tuple(told.get(phone.start_s, -1) for phone in tier)
+
+
 def _padded(samples: npt.NDArray[np.int16], rate_hz: int) -> Audio:
     quiet = np.zeros(round(END_SILENCE_S * rate_hz), np.float32)
     sound = samples.astype(np.float32) / np.float32(32768)
@@ -263,6 +268,7 @@ def speak_espeak(request: SpeechRequest, phones: PhoneSet) -> Utterance:
         words=word_tier,
         audio=_padded(samples, rate_hz),
         engine="espeak",
+        stress=_stress(spoken, tier),
     )
     return with_syllables(made, request.language, phones)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from corpus_tools.core import FloatArray
-from corpus_tools.speech.phone_maps import PhoneMap
+from corpus_tools.speech.phone_maps import Mapped, PhoneMap
 
 __all__ = ["PAUSE_CLOSURE_S", "SHORTEST_S", "SpokenPhone", "closure_start", "spoken_phones", "spread"]
 
@@ -24,11 +24,12 @@ _VOWEL_SHARE, _CONSONANT_SHARE = 2.0, 1.0
 
 @dataclass(frozen=True, slots=True)
 class SpokenPhone:
-    """A phone of the target set from `start_s` to the start of the next, and the word that it belongs to."""
+    """A phone of the target set from `start_s` to the start of the next, its word, the stress of a vowel."""
 
     start_s: float
     phone: str
     word: int
+    stress: int = -1
 
 
 def closure_start(samples: npt.NDArray[np.int16], at: int, floor: int) -> int:
@@ -121,17 +122,23 @@ def spoken_phones(
     edges = np.array([*starts, len(samples)]) / rate_hz
     found: list[SpokenPhone] = []
     place = 0
+    vowels = phone_map.phones.vowels
+
+    def stress(phone: str, mapped: Mapped) -> int:
+        marks = [phone_map.stress(events[place + k][1]) for k in range(mapped.first, mapped.last + 1)]
+        return (1 if 1 in marks else max(marks)) if phone in vowels else -1
+
     while place < len(events):
         stop = place
         while stop < len(events) and events[stop][2] == events[place][2]:
             stop += 1
         for mapped in phone_map.translate([symbol for _, symbol, _ in events[place:stop]]):
             low, high = edges[place + mapped.first], edges[place + mapped.last + 1]
-            shares = _shares(mapped.phones, phone_map.phones.vowels) if mapped.phones else ()
+            shares = _shares(mapped.phones, vowels) if mapped.phones else ()
             found += [
-                SpokenPhone(float(low + share * (high - low)), phone, events[place][2])
+                SpokenPhone(float(low + share * (high - low)), phone, events[place][2], stress(phone, mapped))
                 for share, phone in zip(shares, mapped.phones, strict=True)
             ]
         place = stop
     moved = spread(np.array([p.start_s for p in found]), float(edges[-1]))
-    return [SpokenPhone(float(t), p.phone, p.word) for t, p in zip(moved, found, strict=True)]
+    return [replace(p, start_s=float(t)) for t, p in zip(moved, found, strict=True)]
