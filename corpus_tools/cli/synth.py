@@ -43,6 +43,7 @@ OPTIONS = {
     "speech__engine": "--engine",
     "speech__voice": "--voice",
     "speech__rate": "--rate",
+    "speech__sound": "--sound",
     "selection__method": "--method",
     "deform__mesh": "--mesh",
     "alignment__rate_hz": "--fps",
@@ -57,6 +58,8 @@ def _config(path: Path | None, typed: dict[str, Any]) -> ConfigBase:
     config = load_config(path) if path else Config()
     given = {key: typed[option] for key, option in OPTIONS.items() if typed[option] is not None}
     config = config_with(config, options=OPTIONS, **given)
+    if typed["--sound"] == "units" and not config.selection.sound:
+        config = config_with(config, selection__sound=1.0)
     SEARCHES[config.selection.method]
     return config
 
@@ -180,6 +183,14 @@ def synth(
     rate: Annotated[
         float | None, typer.Option("--rate", help="Speaking rate: 1 as usual, 2 twice as fast.")
     ] = None,
+    sound: Annotated[
+        str | None,
+        typer.Option(
+            "--sound",
+            help="voice, or units: the sound of the chosen fragments, in their own times; how they sound at "
+            "a join then counts as their posture does (selection.sound).",
+        ),
+    ] = None,
     method: Annotated[str | None, typer.Option("--method", help="greedy or viterbi.")] = None,
     config: Annotated[
         Path | None, typer.Option("--config", **PATH, help="A config exported from the workbench.")
@@ -210,7 +221,14 @@ def synth(
     Example: corpus-tools synth WORK --utterance bbaf2n --method viterbi --out OUT
     """
     spoken = {"--lang": lang, "--engine": engine, "--voice": voice, "--rate": rate}
-    other = {"--method": method, "--mesh": mesh, "--fps": fps, "--seed": seed, "--film-fps": film_fps}
+    other = {
+        "--method": method,
+        "--sound": sound,
+        "--mesh": mesh,
+        "--fps": fps,
+        "--seed": seed,
+        "--film-fps": film_fps,
+    }
     asked = SpeakRequest(text, utterance, labels, audio, tuple(k for k, v in spoken.items() if v is not None))
     settings = _config(config, spoken | other)
     asked.check(settings)
@@ -247,7 +265,7 @@ def synth(
             replaceable=is_export_folder,
         )
         removed = remove_stale(out, before)
-    missing = stand_ins(synthesis.selection, target, opened.phones)
+    missing = stand_ins(synthesis.selection, synthesis.utterance, opened.phones)
     summary = _summary(synthesis, missing, opened, settings, out)
     summary |= {"held_out": list(exclude), "removed": list(removed)}
     _tell(summary, missing, len(target.phones), opened, labels is not None)

@@ -25,6 +25,11 @@ class SpeechSettings(Section):
     language: str = Field(
         "", description="Such as en, en-gb, en-us; empty: the language that corpus.toml names."
     )
+    sound: Literal["voice", "units"] = Field(
+        "voice",
+        description="What is heard: the voice or the recording; or the sound of the chosen units, in whose "
+        "times they then speak.",
+    )
     voice: str = Field("", description="Variant of the voice, such as f2; empty: its usual one.")
     rate: float = Field(1.0, ge=0.5, le=2.5, description="Speaking rate: 1 as usual, 2 twice as fast.")
 
@@ -104,6 +109,12 @@ class SelectionSettings(Section):
     )
     aperture: float = Field(
         0.0, ge=0, le=1e6, description="Weight of the lip-aperture distance at a join, relative to join."
+    )
+    sound: float = Field(
+        0.0,
+        ge=0,
+        le=1e6,
+        description="Weight of the distance in sound at a join, relative to join; see speech.sound.",
     )
     allow_backoff: bool = Field(True, description="Let a viseme class stand in where a diphone is missing.")
     components: int = Field(12, ge=1, le=60, description="Principal components of the join distance.")

@@ -49,7 +49,7 @@ class Fragment:
         return np.asarray(0.5 * (self.edges_s[:-1] + self.edges_s[1:]))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class UnitInventory:
     """All phones of all recordings in one row, and a sorted diphone index over them.
 

@@ -111,6 +111,7 @@ def fit_viterbi(
     velocity: Weight = 0.3,
     acceleration: Weight = 0.0,
     aperture: Weight = 0.0,
+    sound: Weight = 0.0,
     per_join: Weight = 0.0,
 ) -> Predictor:
     """Index the recordings for the search of the cheapest path.
@@ -121,7 +122,7 @@ def fit_viterbi(
     blend |= {"inertial_s": inertial_s, "warp": warp, "resampling": resampling}
     weights = {"duration": duration, "context": context, "position": position, "stress": stress}
     weights |= {"backoff": backoff, "join": join, "velocity": velocity, "acceleration": acceleration}
-    weights |= {"aperture": aperture, "per_join": per_join}
+    weights |= {"aperture": aperture, "sound": sound, "per_join": per_join}
     return _fit(training, "viterbi", weights, blend, remove_bias, closure)
 
 

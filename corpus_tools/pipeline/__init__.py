@@ -31,6 +31,7 @@ from corpus_tools.pipeline.stages import (
     align_units,
     blend_units,
     compare_alignments,
+    link_sound,
     select_units,
     synthesise,
 )
@@ -65,6 +66,7 @@ __all__ = [
     "health_lines",
     "joined_corpora",
     "library_versions",
+    "link_sound",
     "listed_files",
     "one_thread",
     "open_corpus",

@@ -25,12 +25,21 @@ from corpus_tools.synthesis import (
     align_fragments,
     alignment_facts,
     blend_pieces,
+    linked_utterance,
     lip_contacts,
     rest_at_ends,
 )
 from corpus_tools.synthesis.lips import make_contacts
 
-__all__ = ["Synthesis", "align_units", "blend_units", "compare_alignments", "select_units", "synthesise"]
+__all__ = [
+    "Synthesis",
+    "align_units",
+    "blend_units",
+    "compare_alignments",
+    "link_sound",
+    "select_units",
+    "synthesise",
+]
 
 MOST_BYTES = 2e9
 """Of the vertices of one synthesis (our choice: about 5 minutes of the bundled head at 120 frames/s)."""
@@ -106,6 +115,21 @@ def select_units(
         allow_backoff=config.selection.allow_backoff,
         **weights,
     )
+
+
+def link_sound(
+    corpus: OpenCorpus, utterance: Utterance, selection: Selection, config: ConfigBase
+) -> Utterance:
+    """Return the target as it is, or on the clock of its units with their sound (`speech.sound` = "units").
+
+    Raises
+    ------
+    InputError
+        A chosen recording has no sound, or two differ in their rate.
+    """
+    if config.speech.sound == "voice":
+        return utterance
+    return linked_utterance(utterance, selection, corpus.inventory)
 
 
 def _check_rate(rate_hz: float) -> None:
@@ -214,6 +238,7 @@ def synthesise(
 
     _check_size(utterance, config.alignment.rate_hz, head)
     selection = select_units(corpus, utterance, config, exclude)
+    utterance = link_sound(corpus, utterance, selection, config)
     lap("select")
     pieces = align_units(corpus, utterance, selection, config)
     lap("align")

@@ -24,6 +24,7 @@ from corpus_tools.synthesis.overlap import overlap_lengths
 from corpus_tools.synthesis.pieces import AlignedPieces, Piece, align_fragments
 from corpus_tools.synthesis.resampling import TimeRbf, fit_time_rbf, fit_uniform_rbf, resample_uniform
 from corpus_tools.synthesis.rest import rest_at_ends
+from corpus_tools.synthesis.sound import linked_utterance
 from corpus_tools.synthesis.stand_ins import StandIn, stand_ins, stand_ins_told
 from corpus_tools.synthesis.usercurve import DEFAULT_CURVE, curve_order, curve_through, user_weighting
 from corpus_tools.synthesis.visible import how_it_differs
@@ -70,6 +71,7 @@ __all__ = [
     "join_features",
     "join_gaps",
     "join_inertially",
+    "linked_utterance",
     "lip_contacts",
     "narrowed",
     "natural_distribution",

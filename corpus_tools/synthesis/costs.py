@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from corpus_tools.core import FloatArray, IntArray
 from corpus_tools.synthesis.model import SelectionModel
+from corpus_tools.synthesis.sound_joins import join_sounds
 from corpus_tools.synthesis.target import JOIN_TERMS, TARGET_TERMS, Target
 
 __all__ = ["join_costs", "join_matrix", "span_costs"]
@@ -58,7 +59,7 @@ def join_costs(
 
     Returns
     -------
-    (n, 5) float64
+    (n, 6) float64
         The weighted terms of :data:`~corpus_tools.synthesis.target.JOIN_TERMS`; all 0 where the rows are one
         and the same: speech goes on.
     """
@@ -72,7 +73,12 @@ def join_costs(
     for column, (weight, values) in enumerate(vectors):
         terms[:, column] = weight * _lengths(values[left_rows] - values[right_rows])
     terms[:, 3] = target.aperture * np.abs(joins.aperture[left_rows] - joins.aperture[right_rows])
-    terms[:, 4] = target.each
+    if target.sound > 0:
+        heard = join_sounds(model.inventory)
+        terms[:, 4] = target.sound * _lengths(heard[left_rows] - heard[right_rows])
+    else:
+        terms[:, 4] = 0.0
+    terms[:, 5] = target.each
     terms[left_rows == right_rows] = 0.0
     return terms
 
@@ -94,6 +100,9 @@ def join_matrix(
     if target.aperture > 0:
         apart = np.subtract.outer(joins.aperture[left_rows], joins.aperture[right_rows])
         total += target.aperture * np.abs(apart, out=apart)
+    if target.sound > 0:
+        heard = join_sounds(model.inventory)
+        total += target.sound * _distances(heard[left_rows], heard[right_rows])
     total += target.each
     return total
 

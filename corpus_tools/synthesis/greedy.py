@@ -92,6 +92,7 @@ def select_greedy(
     velocity: float = 0.3,
     acceleration: float = 0.0,
     aperture: float = 0.0,
+    sound: float = 0.0,
     per_join: float = 0.0,
 ) -> Selection:
     """Select units longest first (paper A section 5.1.1), its endless loop mended.
@@ -114,7 +115,7 @@ def select_greedy(
         Alternatives listed with each unit.
     duration, context, position, stress, backoff, flagged : float
         Weights of the target terms; `backoff` is the cost of a phone replaced by another of its class.
-    join, velocity, acceleration, aperture, per_join : float
+    join, velocity, acceleration, aperture, sound, per_join : float
         Weights of the join terms; they are reported, but do not steer this search.
 
     Returns
@@ -136,6 +137,7 @@ def select_greedy(
         "velocity": velocity,
         "acceleration": acceleration,
         "aperture": aperture,
+        "sound": sound,
         "per_join": per_join,
     }
     target = prepare_target(model, utterance, **weights)

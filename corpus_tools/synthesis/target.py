@@ -15,7 +15,7 @@ from corpus_tools.synthesis.model import SHORTEST_S, SelectionModel
 __all__ = ["JOIN_TERMS", "TARGET_TERMS", "Target", "prepare_target"]
 
 TARGET_TERMS = ("timing", "context", "place", "stress", "backoff", "flagged")
-JOIN_TERMS = ("position", "velocity", "acceleration", "aperture", "each")
+JOIN_TERMS = ("position", "velocity", "acceleration", "aperture", "sound", "each")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,8 +43,8 @@ class Target:
         Weighted mismatch of the phone itself: 0 same phone, 0.5 same viseme class, else 0.5 to 1 by how far
         the postures of the two classes lie apart. A diphone holds half of each of its phones, so that a whole
         phone replaced by one of its class costs the weight, any other up to twice that, the farthest most.
-    flagged, join, velocity, acceleration, aperture, each : float
-        Weights; the middle three have `join` multiplied in.
+    flagged, join, velocity, acceleration, aperture, sound, each : float
+        Weights; the middle four have `join` multiplied in.
     """
 
     labels: tuple[str, ...]
@@ -61,6 +61,7 @@ class Target:
     velocity: float
     acceleration: float
     aperture: float
+    sound: float
     each: float
 
     @property
@@ -72,13 +73,13 @@ class Target:
     def unasked(self) -> frozenset[str]:
         """The terms that have no weight and are not listed: those that were added to the first ones."""
         weights = {"place": self.place is not None, "stress": self.stress is not None}
-        weights |= {k: getattr(self, k) > 0 for k in ("acceleration", "aperture", "each")}
+        weights |= {k: getattr(self, k) > 0 for k in ("acceleration", "aperture", "sound", "each")}
         return frozenset(name for name, asked in weights.items() if not asked)
 
     @property
     def typical_join(self) -> float:
         """What a join costs whose distances are all 1."""
-        return self.join + self.velocity + self.acceleration + self.aperture
+        return self.join + self.velocity + self.acceleration + self.aperture + self.sound
 
 
 def prepare_target(
@@ -95,6 +96,7 @@ def prepare_target(
     velocity: float = 0.3,
     acceleration: float = 0.0,
     aperture: float = 0.0,
+    sound: float = 0.0,
     per_join: float = 0.0,
 ) -> Target:
     """Encode a target utterance and fold the weights in.
@@ -108,7 +110,7 @@ def prepare_target(
     """
     weights = dict(duration=duration, context=context, position=position, stress=stress, backoff=backoff)
     weights |= dict(flagged=flagged, join=join, velocity=velocity, acceleration=acceleration)
-    _check_weights(weights | dict(aperture=aperture, per_join=per_join))
+    _check_weights(weights | dict(aperture=aperture, sound=sound, per_join=per_join))
     labels = utterance.labels
     if len(labels) < 2:
         raise InputError(
@@ -134,6 +136,7 @@ def prepare_target(
         velocity=join * velocity,
         acceleration=join * acceleration,
         aperture=join * aperture,
+        sound=join * sound,
         each=per_join,
     )
 

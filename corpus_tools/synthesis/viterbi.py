@@ -105,6 +105,7 @@ def select_viterbi(
     velocity: float = 0.3,
     acceleration: float = 0.0,
     aperture: float = 0.0,
+    sound: float = 0.0,
     per_join: float = 0.0,
 ) -> Selection:
     """Select units at least total cost: timing, context, backoff, flagged frames, and joins.
@@ -121,8 +122,8 @@ def select_viterbi(
         Weights of the target terms; `position`: place in syllable, word and phrase.
     join : float
         Weight of the posture distance at a join.
-    velocity, acceleration, aperture : float
-        Weights of the distance in velocity, acceleration and lip aperture, relative to `join`.
+    velocity, acceleration, aperture, sound : float
+        Weights of the distance in velocity, acceleration, lip aperture and sound, relative to `join`.
     per_join : float
         Cost of every join as such.
 
@@ -148,6 +149,7 @@ def select_viterbi(
         "velocity": velocity,
         "acceleration": acceleration,
         "aperture": aperture,
+        "sound": sound,
         "per_join": per_join,
     }
     target = prepare_target(model, utterance, **weights)

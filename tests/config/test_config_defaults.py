@@ -19,14 +19,14 @@ RENAMED = {
 }
 SAME = [
     (clean_captures, "cleaning", 10),
-    (select_greedy, "selection", 11),
-    (select_viterbi, "selection", 12),
+    (select_greedy, "selection", 12),
+    (select_viterbi, "selection", 13),
     (align_fragments, "alignment", 4),
     (blend_pieces, "blend", 9),
     (FIT["greedy"], "blend", 4),
     (FIT["viterbi"], "blend", 4),
     (FIT["greedy"], "selection", 4),
-    (FIT["viterbi"], "selection", 9),
+    (FIT["viterbi"], "selection", 10),
     *[(fit, section, 1) for fit in FIT.values() for section in ("cleaning", "closure")],
 ]
 

@@ -130,6 +130,7 @@ from tests.papers.paper_a.results import (
 from tests.papers.paper_a.retarget import test_one_capture_opens_and_rounds_the_mouth_of_every_character
 from tests.papers.paper_a.future import (
     test_units_of_like_boundary_conditions_are_preferred,
+    test_units_of_sound_and_motion_are_chosen_together,
     test_backoff_merges_captured_fragments_with_what_stands_in,
 )
 

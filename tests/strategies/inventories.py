@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from hypothesis import strategies as st
 
-from corpus_tools.core import Capture, FrameFlag, Interval, LabelError, Recording, Tier, Utterance
+from corpus_tools.core import Audio, Capture, FrameFlag, Interval, LabelError, Recording, Tier, Utterance
 
 SILENCE = "SIL"
 CLASSES = {"P": "lips", "B": "lips", "T": "tip", "D": "tip", "A": "open", "O": "open", SILENCE: "rest"}
@@ -78,6 +78,18 @@ def simulated_recordings(n: int = 12, seed: int = 0, longest: int = 9) -> list[R
     for index in range(n):
         phones = draw_phones(rng, int(rng.integers(2, longest + 1)))
         found.append(recording(f"s{index:03d}", phones, rng.uniform(0.04, 0.2, len(phones)), seed))
+    return found
+
+
+def with_sounds(recordings: list[Recording], seed: int = 0) -> list[Recording]:
+    """Return recordings with simulated sound: another mixture of tones in every tenth of a second."""
+    rng, rate, found = np.random.default_rng(seed), 8000, []
+    for one in recordings:
+        n = round(one.utterance.duration_s * rate) + 1
+        hz = np.repeat(rng.uniform(100, 3000, (4, n // 800 + 1)), 800, axis=1)[:, :n]
+        tones = 0.1 * np.sin(2 * np.pi * np.cumsum(hz, axis=1) / rate).sum(axis=0)
+        sound = Audio(np.asarray(tones, np.float32), rate)
+        found.append(replace(one, utterance=replace(one.utterance, audio=sound)))
     return found
 
 

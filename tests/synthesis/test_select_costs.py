@@ -9,7 +9,14 @@ from corpus_tools.fragments import build_inventory
 from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
 from corpus_tools.synthesis.costs import join_costs, join_matrix, span_costs
 from corpus_tools.synthesis.target import JOIN_TERMS, TARGET_TERMS, prepare_target
-from tests.strategies.inventories import SmallPhoneSet, capture, recording, simulated_recordings, utterance
+from tests.strategies.inventories import (
+    SmallPhoneSet,
+    capture,
+    recording,
+    simulated_recordings,
+    utterance,
+    with_sounds,
+)
 
 SEARCHES = [select_greedy, select_viterbi]
 
@@ -259,19 +266,17 @@ def test_join_features_are_in_units_of_their_spread():
 def test_terms_that_are_not_asked_for_are_not_listed(search):
     model = model_of(recording("a", ["SIL", "P", "A", "SIL"]), recording("b", ["SIL", "A", "T", "SIL"]))
     target = utterance("t", ["SIL", "P", "A", "T", "SIL"])
-    terms = ("position", "stress", "acceleration", "aperture", "per_join")
+    terms = ("position", "stress", "acceleration", "aperture", "sound", "per_join")
     plain = search(model, target, **dict.fromkeys(terms, 0)).chosen[1].costs
     assert tuple(dict(plain.target)) == ("timing", "context", "backoff", "flagged")
     assert tuple(dict(plain.join)) == ("position", "velocity")
-    asked = (
-        search(model, target, position=1, stress=1, acceleration=1, aperture=1, per_join=1).chosen[1].costs
-    )
+    asked = search(model, target, **dict.fromkeys(terms, 1)).chosen[1].costs
     assert (tuple(dict(asked.target)), tuple(dict(asked.join))) == (TARGET_TERMS, JOIN_TERMS)
 
 
 def test_the_matrix_of_joins_is_the_costs_of_its_pairs():
-    model = model_of(*simulated_recordings(8, 1))
-    weights = dict(join=2.0, velocity=0.5, acceleration=0.25, aperture=0.75, per_join=0.1)
+    model = model_of(*with_sounds(simulated_recordings(8, 1)))
+    weights = dict(join=2.0, velocity=0.5, acceleration=0.25, aperture=0.75, sound=0.4, per_join=0.1)
     target = prepare_target(model, model.inventory.recordings[0].utterance, **weights)
     left, right = np.arange(3, 9), np.arange(20, 31)
     pairs = join_costs(model, target, np.repeat(left, len(right)), np.tile(right, len(left))).sum(axis=1)

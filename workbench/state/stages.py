@@ -18,6 +18,7 @@ from corpus_tools.pipeline import (
     align_units,
     animate,
     blend_units,
+    link_sound,
     prepare_head,
     select_units,
     speak_for,
@@ -162,6 +163,8 @@ class Stages:
         root = (corpus, request.sentence, request.text, *_values(config, "speech"), exclude)
         key = (*root, *_values(config, "selection", "overrides"))
         selection = self._stage("select", key, lambda: select_units(corpus, utterance, config, exclude), ran)
+        said = utterance
+        utterance = self._stage("link", key, lambda: link_sound(corpus, said, selection, config), [])
         check()
         key = (*key, *_values(config, "alignment"))
         pieces = self._stage("align", key, lambda: align_units(corpus, utterance, selection, config), ran)

@@ -22,6 +22,7 @@ _TERMS = {
     "velocity": "join velocity",
     "acceleration": "join acceleration",
     "aperture": "join lip aperture",
+    "sound": "join sound",
     "each": "each join",
 }
 _DOUBTS = ("backoff", "flagged")

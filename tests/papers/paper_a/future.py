@@ -3,18 +3,21 @@
 import itertools
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from corpus_tools.core import UnitRef
 from corpus_tools.fragments import build_inventory
-from corpus_tools.synthesis import prepare_selection, select_greedy, select_viterbi
+from corpus_tools.synthesis import linked_utterance, prepare_selection, select_greedy, select_viterbi
+from corpus_tools.synthesis.sound_joins import join_sounds
 from tests.strategies.inventories import (
     SmallPhoneSet,
     corpora,
     covered_target,
     recording,
+    simulated_recordings,
     utterance,
+    with_sounds,
 )
 
 
@@ -42,6 +45,30 @@ def test_units_of_like_boundary_conditions_are_preferred(recordings, seed):
     best = select_viterbi(model, target, prune=None, **only_joins)
     first = select_greedy(model, target, **only_joins)
     assert gap(model, best) <= gap(model, first) + 1e-9
+
+
+@settings(max_examples=12)
+@given(st.integers(0, 1000), st.floats(0.1, 5))
+def test_units_of_sound_and_motion_are_chosen_together(seed, weight):
+    """ "to select both audio and visual units"
+
+    The more the joins of the sound count, the better they are, and a target may take the times and the sound
+    of its units.
+    """
+    model = model_of(with_sounds(simulated_recordings(8, seed), seed))
+    target = covered_target(list(model.inventory.recordings), np.random.default_rng(seed))
+    heard = join_sounds(model.inventory)
+    totals = []
+    for sound in (0.0, weight):
+        chosen = select_viterbi(model, target, prune=None, sound=sound)
+        rows = [model.inventory.rows(c.unit) for c in chosen.chosen]
+        pairs = [(a[-1], b[0]) for a, b in itertools.pairwise(rows)]
+        totals.append(sum(float(np.linalg.norm(heard[a] - heard[b])) for a, b in pairs))
+    assert totals[1] <= totals[0] + 1e-9
+    linked = linked_utterance(target, chosen, model.inventory)
+    assert linked.labels == target.labels
+    assert linked.audio is not None
+    assert abs(linked.audio.duration_s - linked.duration_s) < 0.001
 
 
 def test_backoff_merges_captured_fragments_with_what_stands_in():
