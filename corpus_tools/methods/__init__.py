@@ -1,7 +1,6 @@
 """Every way from timed phones to marker motion, by id."""
 
 from corpus_tools.methods import dominance, fragments, mean, viseme_linear
-from corpus_tools.methods.fragments import CONTEXT_S
 from corpus_tools.methods.registry import (
     METHODS,
     SEARCHES,
@@ -10,7 +9,8 @@ from corpus_tools.methods.registry import (
     Variant,
     parse_variant,
 )
-from corpus_tools.methods.training import SPEECH_MARGIN_S, TrainingSet, phone_anchors_s
+from corpus_tools.methods.training import CONTEXT_S, SPEECH_MARGIN_S, TrainingSet, phone_anchors_s
+from corpus_tools.methods.tuning import Tuning, tune_weights
 
 __all__ = [
     "CONTEXT_S",
@@ -20,11 +20,13 @@ __all__ = [
     "Method",
     "Predictor",
     "TrainingSet",
+    "Tuning",
     "Variant",
     "dominance",
     "fragments",
     "mean",
     "parse_variant",
     "phone_anchors_s",
+    "tune_weights",
     "viseme_linear",
 ]

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from corpus_tools.core import Trajectory, Utterance
 from corpus_tools.fragments import cut_fragment
 from corpus_tools.methods.registry import METHODS, SEARCHES, Method, Predictor
 from corpus_tools.methods.settings import Fading, Seconds, Weight, Weighting
-from corpus_tools.methods.training import TrainingSet
+from corpus_tools.methods.training import CONTEXT_S, TrainingSet
+from corpus_tools.methods.tuning import tune_weights
 from corpus_tools.synthesis import render_selection
 from corpus_tools.synthesis.alignment import WarpKind
 from corpus_tools.synthesis.blending import BlendMode
 from corpus_tools.synthesis.lips import make_contacts
 from corpus_tools.synthesis.pieces import Resampling
 
-__all__ = ["CONTEXT_S", "fit_greedy", "fit_viterbi"]
-
-CONTEXT_S = 0.4
-"""Motion cut on both sides of a unit, s: half the longest overlap and a margin for resampling."""
+__all__ = ["fit_greedy", "fit_viterbi"]
 
 JOIN_COMPONENTS = 12
 LIP_COMPONENTS = 16
@@ -92,6 +90,25 @@ def fit_greedy(
     return _fit(training, "greedy", weights, blend, remove_bias, closure)
 
 
+def _tuned(
+    training: TrainingSet, start: dict[str, float], blend: dict[str, Any], remove_bias: bool
+) -> dict[str, float]:
+    """Return the weights found on the training set, once for all methods that ask for the same."""
+    key = ("tuned", remove_bias, *start.items(), *blend.items())
+    tuning = training.shared(
+        key,
+        lambda: tune_weights(
+            training,
+            SEARCHES["viterbi"],
+            start,
+            remove_bias=remove_bias,
+            components=JOIN_COMPONENTS,
+            blend=blend,
+        ),
+    )
+    return tuning.weights
+
+
 def fit_viterbi(
     training: TrainingSet,
     remove_bias: bool = True,
@@ -113,17 +130,21 @@ def fit_viterbi(
     aperture: Weight = 0.0,
     sound: Weight = 0.0,
     per_join: Weight = 0.0,
+    weights: Literal["given", "tuned"] = "given",
 ) -> Predictor:
     """Index the recordings for the search of the cheapest path.
 
     Parameters as of :func:`fit_greedy`, and the weights of :func:`~corpus_tools.synthesis.select_viterbi`.
+    With `weights` "tuned" they are only where :func:`~corpus_tools.methods.tuning.tune_weights` begins.
     """
     blend: dict[str, Any] = {"mode": mode, "weighting": weighting, "overlap_s": overlap_s}
     blend |= {"inertial_s": inertial_s, "warp": warp, "resampling": resampling}
-    weights = {"duration": duration, "context": context, "position": position, "stress": stress}
-    weights |= {"backoff": backoff, "join": join, "velocity": velocity, "acceleration": acceleration}
-    weights |= {"aperture": aperture, "sound": sound, "per_join": per_join}
-    return _fit(training, "viterbi", weights, blend, remove_bias, closure)
+    given = {"duration": duration, "context": context, "position": position, "stress": stress}
+    given |= {"backoff": backoff, "join": join, "velocity": velocity, "acceleration": acceleration}
+    given |= {"aperture": aperture, "sound": sound, "per_join": per_join}
+    if weights == "tuned":
+        given = _tuned(training, given, blend, remove_bias)
+    return _fit(training, "viterbi", given, blend, remove_bias, closure)
 
 
 _LONGEST = "Longest fragment first, as paper A prints it (its endless loop mended)."

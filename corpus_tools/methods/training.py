@@ -16,9 +16,12 @@ from corpus_tools.synthesis import PostureBasis, SelectionModel, prepare_selecti
 from corpus_tools.synthesis.basis import principal_basis
 from corpus_tools.synthesis.lips import LipModel, lip_model
 
-__all__ = ["SPEECH_MARGIN_S", "TrainingSet", "phone_anchors_s"]
+__all__ = ["CONTEXT_S", "SPEECH_MARGIN_S", "TrainingSet", "phone_anchors_s"]
 
 T = TypeVar("T")
+
+CONTEXT_S = 0.4
+"""Motion cut on both sides of a unit, s: half the longest overlap and a margin for resampling."""
 
 SPEECH_MARGIN_S = 0.12
 """Motion this close to speech counts as speech, s: lips begin and end to move outside the labels."""

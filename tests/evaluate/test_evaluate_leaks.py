@@ -10,7 +10,7 @@ from strategies.talking import talking_corpus
 
 from corpus_tools.core import Capture
 from corpus_tools.evaluate import evaluate, k_folds, leave_one_out
-from corpus_tools.methods import METHODS, Method, Variant
+from corpus_tools.methods import METHODS, Method, Variant, parse_variant
 from corpus_tools.pipeline import cleaned_recordings, read_corpus
 
 
@@ -47,7 +47,7 @@ def predictions(raw, folds, method, keep):
     found = {}
 
     def fit(training):
-        predict = METHODS[method].fit(training)
+        predict = parse_variant(method).fit(training)
 
         def spy(utterance):
             motion = predict(utterance)
@@ -60,7 +60,7 @@ def predictions(raw, folds, method, keep):
     return {name: found[name] for name in keep}
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [*METHODS, "viterbi:weights=tuned"])
 def test_predictions_do_not_depend_on_the_motion_of_tested_recordings(raw, method):
     fold = k_folds(raw.names, 3)[0]
     clean = predictions(raw, [fold], method, fold.test)
