@@ -6,7 +6,7 @@ import contextlib
 import datetime
 import platform
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +17,7 @@ from corpus_tools.cli.common import PATH, check_out_folder, emit_json, progress_
 from corpus_tools.core import InputError
 from corpus_tools.evaluate import (
     METRICS,
+    Evaluation,
     Fold,
     Table,
     evaluate,
@@ -109,7 +110,17 @@ def _about(source: CorpusSource, how: str, variants: Sequence[Variant], seed: in
     }
 
 
-def _tell(table: Table, failures: int, out: Path) -> None:
+def _tuned_lines(result: Evaluation) -> Iterator[str]:
+    for method, found in result.tuned.items():
+        if len(found) > USUAL_FOLDS:
+            yield f"{method}: the weights found on each of {len(found)} training parts are in table.json."
+            continue
+        for number, weights in enumerate(found, 1):
+            told = ", ".join(f"{name} {value:g}" for name, value in weights.items() if value)
+            yield f"{method} found on training part {number}: {told}."
+
+
+def _tell(table: Table, result: Evaluation, out: Path) -> None:
     shown = [m for m in SHOWN if any((method, m) in table.values for method in table.methods)]
     headers = [f"{m} {METRICS[m].unit}".strip() for m in shown]
     width = max(len(m) for m in table.methods)
@@ -120,7 +131,9 @@ def _tell(table: Table, failures: int, out: Path) -> None:
         say("  ".join([f"{method:<{width}}", *row]))
     say("Read error and realism together: 'natural' and 'repetition' are what speech itself scores, the")
     say("latter only in words that are said again (word_rmse). –: nothing to say. Without unit: a ratio.")
-    if failures:
+    for line in _tuned_lines(result):
+        say(line)
+    if failures := len(result.failures):
         say(f"▲ {failures} times a method could not speak a sentence: left out of its row (table.json).")
     say(f"{len(METRICS)} metrics with intervals: {out / 'report.html'}, {out / 'table.csv'}")
 
@@ -134,7 +147,7 @@ def _run(
     alone: bool,
     variants: Sequence[Variant],
     seed: int,
-) -> tuple[Table, dict[str, Any], int]:
+) -> tuple[Table, dict[str, Any], Evaluation]:
     with progress_bar("reading") as progress:
         source, split, how = _split(
             corpus, test_corpus, folds, alone, seed, lambda f, w: progress(0.03 * f, w)
@@ -153,7 +166,7 @@ def _run(
         now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
         run = {"date": now, "host": platform.node(), "system": platform.platform()}
         write_evaluation(out, result, table, about, run)
-    return table, about, len(result.failures)
+    return table, about, result
 
 
 def evaluate_(
@@ -176,7 +189,8 @@ def evaluate_(
         typer.Option(
             "--methods",
             help=f"By comma: {', '.join(METHODS)}; settings after a colon, as in "
-            "viterbi:mode=inertial+remove_bias=off. All methods by default.",
+            "viterbi:mode=inertial+remove_bias=off; viterbi:weights=tuned finds its weights on the training "
+            "part. All methods by default.",
         ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of folds, resamples and repetitions.")] = 0,
@@ -194,8 +208,8 @@ def evaluate_(
     check_out_folder(out, corpus)
     if test_corpus is not None:
         check_out_folder(out, test_corpus)
-    table, about, failures = _run(corpus, out, test_corpus, folds, alone, variants, seed)
-    _tell(table, failures, out)
+    table, about, result = _run(corpus, out, test_corpus, folds, alone, variants, seed)
+    _tell(table, result, out)
     if json_:
         rows = [
             {"method": a, "metric": m, "value": e.value, "low": e.low, "high": e.high, "n": e.n}

@@ -41,7 +41,7 @@ def _estimate(found: Estimate) -> dict[str, Any]:
 
 
 def table_json(evaluation: Evaluation, table: Table, about: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the whole result as plain data: settings, metrics, values, paired ratios, failures."""
+    """Return the whole result as plain data: settings, metrics, values, ratios, tuned weights, failures."""
     return {
         **about,
         "sentences": table.n_sentences,
@@ -57,6 +57,7 @@ def table_json(evaluation: Evaluation, table: Table, about: Mapping[str, Any]) -
             {"method": a, "against": b, "metric": metric, **_estimate(found)}
             for (a, b, metric), found in table.ratios.items()
         ],
+        "tuned": {method: list(found) for method, found in evaluation.tuned.items()},
         "failures": [
             {"method": method, "sentence": sentence, "reason": reason}
             for method, sentence, reason in evaluation.failures

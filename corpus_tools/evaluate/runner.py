@@ -6,7 +6,7 @@ import gc
 import time
 from collections import defaultdict
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -17,7 +17,7 @@ from corpus_tools.evaluate.folds import Fold
 from corpus_tools.evaluate.metrics import METRICS
 from corpus_tools.evaluate.natural import Natural, natural_of
 from corpus_tools.evaluate.repetition import RepeatedWords
-from corpus_tools.methods import Predictor, TrainingSet, Variant
+from corpus_tools.methods import Predictor, TrainingSet, TunedPredictor, Variant
 from corpus_tools.speech import PhoneSet
 
 __all__ = ["NATURAL", "REPETITION", "Evaluation", "Source", "evaluate"]
@@ -60,6 +60,8 @@ class Evaluation:
         Mean over folds.
     predict_ms : dict of method -> ms
         Mean over sentences.
+    tuned : dict of method -> tuple of weights
+        What a method found on each training part, in the order of folds; none of methods with given weights.
     """
 
     sentences: tuple[str, ...]
@@ -69,6 +71,7 @@ class Evaluation:
     failures: tuple[tuple[str, str, str], ...]
     fit_s: dict[str, float]
     predict_ms: dict[str, float]
+    tuned: dict[str, tuple[dict[str, float], ...]] = field(default_factory=dict)
 
     @property
     def methods(self) -> tuple[str, ...]:
@@ -88,6 +91,7 @@ class _Collected:
         self.fit_s: dict[str, list[float]] = defaultdict(list)
         self.predict_s: dict[str, list[float]] = defaultdict(list)
         self.joins_s: dict[str, list[float]] = defaultdict(list)
+        self.tuned: dict[str, list[dict[str, float]]] = defaultdict(list)
 
     def take(self, method: str, comparison: Comparison, words_only: bool = False) -> None:
         for metric in METRICS.values():
@@ -108,6 +112,7 @@ class _Collected:
             tuple(self.failures),
             {method: float(np.mean(v)) for method, v in self.fit_s.items()},
             {method: float(1e3 * np.mean(v)) for method, v in self.predict_s.items()},
+            {method: tuple(v) for method, v in self.tuned.items()},
         )
 
 
@@ -216,6 +221,8 @@ def _run_fold(
         start = time.perf_counter()
         predict = variant.fit(training)
         collected.fit_s[variant.label].append(time.perf_counter() - start)
+        if isinstance(predict, TunedPredictor):
+            collected.tuned[variant.label].append(dict(predict.weights))
         for name in fold.test:
             _predicted(collected, variant.label, predict, recordings[name], natural, phones, spoken[name])
     for name in fold.test:

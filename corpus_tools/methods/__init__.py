@@ -6,6 +6,7 @@ from corpus_tools.methods.registry import (
     SEARCHES,
     Method,
     Predictor,
+    TunedPredictor,
     Variant,
     parse_variant,
 )
@@ -20,6 +21,7 @@ __all__ = [
     "Method",
     "Predictor",
     "TrainingSet",
+    "TunedPredictor",
     "Tuning",
     "Variant",
     "dominance",

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from corpus_tools.core import Trajectory, Utterance
 from corpus_tools.fragments import cut_fragment
-from corpus_tools.methods.registry import METHODS, SEARCHES, Method, Predictor
+from corpus_tools.methods.registry import METHODS, SEARCHES, Method, Predictor, TunedPredictor
 from corpus_tools.methods.settings import Fading, Seconds, Weight, Weighting
 from corpus_tools.methods.training import CONTEXT_S, TrainingSet
 from corpus_tools.methods.tuning import tune_weights
@@ -142,9 +142,10 @@ def fit_viterbi(
     given = {"duration": duration, "context": context, "position": position, "stress": stress}
     given |= {"backoff": backoff, "join": join, "velocity": velocity, "acceleration": acceleration}
     given |= {"aperture": aperture, "sound": sound, "per_join": per_join}
-    if weights == "tuned":
-        given = _tuned(training, given, blend, remove_bias)
-    return _fit(training, "viterbi", given, blend, remove_bias, closure)
+    if weights == "given":
+        return _fit(training, "viterbi", given, blend, remove_bias, closure)
+    found = _tuned(training, given, blend, remove_bias)
+    return TunedPredictor(_fit(training, "viterbi", found, blend, remove_bias, closure), found)
 
 
 _LONGEST = "Longest fragment first, as paper A prints it (its endless loop mended)."

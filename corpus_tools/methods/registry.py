@@ -18,7 +18,7 @@ from corpus_tools.methods.settings import setting_value
 from corpus_tools.methods.training import TrainingSet
 from corpus_tools.synthesis import select_greedy, select_viterbi
 
-__all__ = ["METHODS", "SEARCHES", "Method", "Predictor", "Variant", "parse_variant"]
+__all__ = ["METHODS", "SEARCHES", "Method", "Predictor", "TunedPredictor", "Variant", "parse_variant"]
 
 Predictor = Callable[[Utterance], Trajectory]
 """What fitting gives: the motion of an utterance at a uniform rate from 0 s to its end."""
@@ -53,6 +53,25 @@ class Method:
         """What values each setting takes, as of :func:`~corpus_tools.methods.settings.setting_value`."""
         hints = get_type_hints(self.fit, include_extras=True)
         return {name: hints[name] for name in self.settings}
+
+
+@dataclass(frozen=True, slots=True)
+class TunedPredictor:
+    """A predictor whose weights were found on the recordings that it was fitted on.
+
+    Attributes
+    ----------
+    predict : callable
+    weights : mapping of str to float
+        As a config names them, section `selection`.
+    """
+
+    predict: Predictor
+    weights: Mapping[str, float]
+
+    def __call__(self, utterance: Utterance) -> Trajectory:
+        """Return the motion of an utterance."""
+        return self.predict(utterance)
 
 
 METHODS: Registry[Method] = Registry("method")

@@ -82,6 +82,17 @@ def test_the_folder_holds_every_method_and_metric_and_twice_the_same(tool, corpu
     assert sum(by_sentence) / 9 == pytest.approx(values["greedy", "rmse"], rel=1e-4)
 
 
+def test_tuned_weights_are_told_for_each_training_part(tool, corpus, tmp_path):
+    method = "viterbi:weights=tuned"
+    code, out, _ = tool("evaluate", corpus, "--folds", 2, "--methods", method, "--out", tmp_path / "o")
+    assert code == 0
+    (found,) = json.loads((tmp_path / "o/table.json").read_text(encoding="utf-8"))["tuned"].values()
+    assert [set(w) >= {"duration", "join", "aperture"} for w in found] == [True, True]
+    for number, weights in enumerate(found, 1):
+        (line,) = (x for x in out.splitlines() if x.startswith(f"{method} found on training part {number}: "))
+        assert f"join {weights['join']:g}" in line
+
+
 def test_the_report_needs_nothing_else(tool, corpus, tmp_path):
     code, _, _ = tool("evaluate", corpus, "--folds", 2, "--methods", "mean,greedy", "--out", tmp_path / "o")
     assert code == 0
