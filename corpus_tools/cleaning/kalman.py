@@ -118,6 +118,8 @@ def _gains(pattern: bytes, rate_hz: float, cutoff_hz: float) -> tuple[FloatArray
     back = np.zeros_like(filtered)
     back[:-1] = np.linalg.solve(predicted[1:], _TRANSITION @ filtered[:-1]).transpose(0, 2, 1)
     variance = _backward(predicted, filtered, back, steady)
+    # at the edge of a gap of many seconds differences of huge numbers are rounded to anything, below 0 too
+    variance = np.maximum(variance, variance[seen & (variance > 0)].min())
     return frozen(gains), frozen(back), frozen(variance)
 
 

@@ -34,7 +34,7 @@ def clean(
         check_out_folder(out, corpus)
     settings = load_config(config) if config is not None else Config()
     with progress_bar("reading") as progress:
-        raw = read_corpus(corpus, lambda f, w: progress(0.4 * f, w))
+        raw = read_corpus(corpus, lambda f, w: progress(0.4 * f, w), unlabelled=True)
         cleaned = clean_corpus(raw, settings, progress=lambda f, w: progress(0.4 + 0.5 * f, w))
         report = cleaning_report(raw, cleaned, lambda f, w: progress(0.9 + 0.1 * f, w))
         if out is not None:

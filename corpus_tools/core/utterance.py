@@ -64,6 +64,9 @@ class Recording:
 
 
 def speech_span_s(utterance: Utterance, silence: str, margin_s: float = 0.0) -> tuple[float, float]:
-    """Return start of the first and end of the last phone that is not silence, s, widened by a margin."""
-    spoken = [p for p in utterance.phones if p.text != silence]
+    """Return start of the first and end of the last phone that is not silence, s, widened by a margin.
+
+    Of an utterance that is silent throughout, those of all of it.
+    """
+    spoken = [p for p in utterance.phones if p.text != silence] or list(utterance.phones)
     return spoken[0].start_s - margin_s, spoken[-1].end_s + margin_s

@@ -9,7 +9,16 @@ from pathlib import Path
 
 from corpus_tools.cleaning import CleanedCorpus, clean_captures
 from corpus_tools.config import Config, ConfigBase
-from corpus_tools.core import Capture, CorpusError, Recording, Utterance, WorkbenchError
+from corpus_tools.core import (
+    Capture,
+    CorpusError,
+    Interval,
+    Labels,
+    Recording,
+    Tier,
+    Utterance,
+    WorkbenchError,
+)
 from corpus_tools.io import (
     CorpusDescription,
     RecordingFiles,
@@ -99,24 +108,18 @@ def _load(
     phones: PhoneSet,
     progress: Progress,
     keep_sound: bool,
+    unlabelled: bool,
 ) -> tuple[list[tuple[Capture, Utterance]], dict[str, str]]:
     loaded, skipped, tiers = [], {}, []
     for index, item in enumerate(files):
         progress(index / len(files), f"reading {item.id}")
         try:
             capture = load_capture(description, item)
-            labels = load_labels(description, item)
-            tiers.append(labels)
-            utterance = recorded_utterance(
-                item.id,
-                labels,
-                capture.audio,
-                phones,
-                phone_tier=description.phone_tier,
-                word_tier=description.word_tier,
-                duration_s=capture.times_s[-1],
-                language=description.language,
-            )
+            if unlabelled and item.labels is None:
+                utterance = _nothing_said(item.id, capture, phones)
+            else:
+                tiers.append(load_labels(description, item))
+                utterance = _said(description, item.id, tiers[-1], capture, phones)
         except WorkbenchError as error:
             skipped[item.id] = str(error)
             continue
@@ -125,6 +128,27 @@ def _load(
         loaded.append((capture, utterance))
     check_word_tier(description, tiers)
     return loaded, skipped
+
+
+def _said(
+    description: CorpusDescription, name: str, labels: Labels, capture: Capture, phones: PhoneSet
+) -> Utterance:
+    return recorded_utterance(
+        name,
+        labels,
+        capture.audio,
+        phones,
+        phone_tier=description.phone_tier,
+        word_tier=description.word_tier,
+        duration_s=capture.times_s[-1],
+        language=description.language,
+    )
+
+
+def _nothing_said(name: str, capture: Capture, phones: PhoneSet) -> Utterance:
+    """Return the utterance of a recording without labels: silence, as long as its motion."""
+    whole = Interval(0.0, max(float(capture.times_s[-1]), 1.0 / capture.rate_hz), phones.silence)
+    return Utterance(name, "", Tier("phones", (whole,)), audio=capture.audio)
 
 
 def _usable(
@@ -152,7 +176,12 @@ def _usable(
     return [(c if len(keep) == len(c.names) else chosen_markers(c, keep), u) for c, u in kept]
 
 
-def read_corpus(folder: str | Path, progress: Progress = silent, keep_sound: bool = True) -> RawCorpus:
+def read_corpus(
+    folder: str | Path,
+    progress: Progress = silent,
+    keep_sound: bool = True,
+    unlabelled: bool = False,
+) -> RawCorpus:
     """Read every usable recording of a corpus; nothing is cleaned yet.
 
     Parameters
@@ -162,6 +191,8 @@ def read_corpus(folder: str | Path, progress: Progress = silent, keep_sound: boo
         ``progress(fraction, what)``; may raise to cancel.
     keep_sound : bool
         Keep the sound of the recordings, which takes more memory than their motion.
+    unlabelled : bool
+        Take recordings without labels too, as silence: they can be cleaned, but not spoken with.
 
     Raises
     ------
@@ -171,7 +202,7 @@ def read_corpus(folder: str | Path, progress: Progress = silent, keep_sound: boo
     description = read_description(folder)
     phones = phone_set(description.phones)
     files = [f for f in find_recordings(description) if f.id not in description.exclude]
-    loaded, skipped = _load(description, files, phones, progress, keep_sound)
+    loaded, skipped = _load(description, files, phones, progress, keep_sound, unlabelled)
     loaded = _usable(description, loaded, skipped, phones.silence)
     if not files:
         raise CorpusError(

@@ -283,3 +283,15 @@ def test_the_input_is_not_touched():
     before = np.array(capture.positions_mm)
     kalman_smooth(capture)
     assert np.array_equal(capture.positions_mm, before, equal_nan=True)
+
+
+@pytest.mark.parametrize(("first", "last"), [(0, 800), (0, 300), (300, 900)])
+def test_a_gap_of_half_a_minute_has_a_band_like_any_other(first, last):
+    """There the variances are differences of numbers of 1e13."""
+    seen = np.ones(1000, bool)
+    seen[first:last] = False
+    values = np.random.default_rng(0).normal(size=(1000, 3))
+    smoothed, variance = smooth_channels(values, seen, 25.0, 10.0)
+    assert np.isfinite(smoothed).all()
+    assert variance.min() > 0
+    assert variance[(first + last) // 2] > 1e6 * variance[-1]

@@ -1,6 +1,7 @@
 """``corpus-tools clean``: told, drawn, as JSON; the corpus is left as it is."""
 
 import json
+import shutil
 
 from tests.cli.answers import last_json
 
@@ -25,3 +26,13 @@ def test_a_corpus_that_is_none_and_an_out_that_is_one_are_refused(tool, simulate
     code, _, err = tool("clean", simulated_corpus, "--out", simulated_corpus)
     assert code == 2
     assert "choose a folder of its own" in err
+
+
+def test_recordings_without_labels_are_cleaned_too(tool, simulated_corpus, tmp_path):
+    bare = tmp_path / "bare"
+    shutil.copytree(simulated_corpus, bare, ignore=shutil.ignore_patterns("*.TextGrid", "*.wav", "truth"))
+    code, out, err = tool("clean", bare, "--json")
+    assert (code, err) == (0, "")
+    found = last_json(out)
+    assert found["summary"]["recordings"] > 0
+    assert (found["audio_offset_s"], found["skipped"]) == (None, {})
