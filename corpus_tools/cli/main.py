@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 import corpus_tools
-from corpus_tools.cli import bench, clean, config, corpus, demo, evaluate, grammar, synth, warps
+from corpus_tools.cli import bench, clean, config, corpus, demo, evaluate, grammar, mesh, synth, warps
 from corpus_tools.cli.common import OneSentence, guarded, say
 
 __all__ = ["app", "run"]
@@ -40,7 +40,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for module in (demo, grammar, corpus, clean, warps, synth, evaluate, config, bench):
+for module in (demo, grammar, corpus, clean, warps, synth, evaluate, mesh, config, bench):
     module.register(app)
 
 

@@ -1,22 +1,32 @@
-"""Mesh files: .npz of our own layout, and .obj with the markers in NAME.markers.json beside it."""
+"""Mesh files: .npz of our own layout; .obj, .ply, .glb with NAME.markers.json beside."""
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
+import struct
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from corpus_tools.core import Mesh, MeshError, atomic_file
+from corpus_tools.core import FloatArray, Mesh, MeshError, atomic_file
 from corpus_tools.mesh.bundle import CHARACTERS, bundled_head
+from corpus_tools.mesh.formats import SURFACE_READERS
+from corpus_tools.mesh.glb import read_glb
 
-__all__ = ["mesh_by_name_or_file", "read_mesh", "write_mesh"]
+__all__ = ["UNITS_MM", "mesh_by_name_or_file", "read_mesh", "read_surface", "unit_of_extent", "write_mesh"]
 
 ARRAYS = ("vertices_mm", "faces", "part", "part_names", "marker_names", "marker_vertices", "lip_pairs")
+UNITS_MM = {"mm": 1.0, "cm": 10.0, "dm": 100.0, "m": 1000.0}
+LEAST_HEAD_MM, MOST_HEAD_MM = 80.0, 800.0
+"""Greatest extent of a face or head (our choice): one decade, so that every size has one unit."""
+_Read = TypeVar("_Read")
+SURFACE_READERS.add(".glb", read_glb)
+KINDS = (".npz", *SURFACE_READERS)
+KINDS_TOLD = ".npz, .obj, .ply or .glb"
 
 
 def mesh_by_name_or_file(text: str) -> Mesh:
@@ -30,10 +40,10 @@ def mesh_by_name_or_file(text: str) -> Mesh:
     if text in CHARACTERS:
         return bundled_head(text)
     path = Path(text)
-    if path.suffix.lower() in (".npz", ".obj") or path.exists():
+    if path.suffix.lower() in KINDS or path.exists():
         return read_mesh(path)
     raise MeshError(
-        f"There is no mesh '{text}'; give one of {', '.join(CHARACTERS)}, or the path of an .npz or .obj."
+        f"There is no mesh '{text}'; give one of {', '.join(CHARACTERS)}, or the path of a file {KINDS_TOLD}."
     )
 
 
@@ -41,25 +51,60 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     """Read a mesh, mm, y up, z out of the face, mouth closed.
 
     ``.npz``: arrays vertices_mm (n, 3), faces (m, 3), part (n,), part_names, marker_names, marker_vertices,
-    lip_pairs (k, 2), as :func:`write_mesh` writes them. ``.obj``: vertices and polygons, groups or objects as
-    parts; beside it NAME.markers.json: {"markers": {name: vertex from 0}, "lip_pairs": [[upper, lower], ...],
-    "scale_to_mm": 1.0}.
+    lip_pairs (k, 2), as :func:`write_mesh` writes them. ``.obj``, ``.ply``, ``.glb``: vertices and
+    polygons, groups or objects as parts; beside it NAME.markers.json: {"markers": {name: vertex from 0, or
+    [x, y, z] in units of the file}, "lip_pairs": [[upper, lower], ...], "scale_to_mm": 1.0}; without a scale
+    the unit is told by the size.
 
     Raises
     ------
     MeshError
         The file is missing, cut, of another kind, or names vertices it does not have.
     """
+    file = _mesh_file(path)
+    reader = _read_npz if file.suffix.lower() == ".npz" else _read_surface_file
+    mesh = Mesh(name=file.stem, **_guarded(reader, file))
+    _check(mesh, file)
+    return mesh
+
+
+def read_surface(path: str | os.PathLike[str]) -> tuple[Mesh, float]:
+    """Read a mesh file without markers, as it is: the mesh in mm, and how many mm its unit is.
+
+    An ``.npz`` keeps its markers; the markers beside other files are not looked at.
+
+    Raises
+    ------
+    MeshError
+        The file is missing, cut, of another kind, or of no size of a head.
+    """
+    file = _mesh_file(path)
+    if file.suffix.lower() == ".npz":
+        return read_mesh(file), 1.0
+    fields, unit = _guarded(lambda f: _surface_fields(f, None), file)
+    mesh = Mesh(name=file.stem, **fields)
+    _check(mesh, file)
+    return mesh, unit
+
+
+def _mesh_file(path: str | os.PathLike[str]) -> Path:
+    """Return the path of a mesh file that is there and of a kind that can be read."""
     file = Path(path)
     if file.is_dir():
-        raise MeshError(f"'{file}' is a folder, and an .npz or .obj file was expected; name a mesh in it.")
+        raise MeshError(f"'{file}' is a folder, and a mesh file was expected; name a mesh in it.")
     if not file.is_file():
         raise MeshError(f"There is no mesh file '{file}'; check the path.")
-    readers = {".npz": _read_npz, ".obj": _read_obj}
-    if file.suffix.lower() not in readers:
-        raise MeshError(f"The mesh file '{file}' ends in '{file.suffix}'; .npz or .obj was expected.")
+    if file.suffix.lower() not in KINDS:
+        raise MeshError(
+            f"The mesh file '{file}' ends in '{file.suffix}'; {KINDS_TOLD} was expected: export it as one."
+        )
+    return file
+
+
+def _guarded(reader: Callable[[Path], _Read], file: Path) -> _Read:
+    """Read a file; whatever is wrong with its bytes costs one sentence."""
     try:
-        fields = readers[file.suffix.lower()](file)
+        return reader(file)
     except (
         OSError,
         ValueError,
@@ -67,12 +112,10 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
         IndexError,
         TypeError,
         AttributeError,
+        struct.error,
         zipfile.BadZipFile,
     ) as error:
         raise MeshError(f"The mesh file '{file}' cannot be read ({error}); export it again.") from error
-    mesh = Mesh(name=file.stem, **fields)
-    _check(mesh, file)
-    return mesh
 
 
 def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
@@ -126,51 +169,57 @@ def _read_npz(file: Path) -> dict[str, Any]:
         }
 
 
-def _read_obj(file: Path) -> dict[str, Any]:
-    points, faces, face_part, part_names = _parse_obj(file)
+def _read_surface_file(file: Path) -> dict[str, Any]:
+    """Return the fields of a mesh of a surface file with the markers beside it."""
     beside = file.with_suffix(".markers.json")
     if not beside.is_file():
         raise MeshError(f"Beside '{file}' there is no '{beside.name}'; it must name the marker vertices.")
     table = json.loads(beside.read_text(encoding="utf-8"))
-    part = np.zeros(len(points), np.int8)
-    triangles = np.array(faces, np.int32).reshape(-1, 3)
-    part[triangles] = np.array(face_part, np.int8)[:, None]
-    return {
-        "vertices_mm": np.array(points, float) * float(table.get("scale_to_mm", 1.0)),
-        "faces": triangles,
+    given = table.get("scale_to_mm")
+    fields, unit = _surface_fields(file, None if given is None else float(given))
+    pairs = np.array(table.get("lip_pairs", []), np.int64).reshape(-1, 2)
+    markers = {str(k): _picked(v, fields["vertices_mm"], unit) for k, v in table["markers"].items()}
+    return fields | {"markers": markers, "lip_pairs": pairs}
+
+
+def _surface_fields(file: Path, scale: float | None) -> tuple[dict[str, Any], float]:
+    """Return the fields of a mesh without markers, and how many mm the unit of the file is."""
+    raw = SURFACE_READERS[file.suffix.lower()](file)
+    if not len(raw.points) or not len(raw.faces):
+        raise MeshError(f"The mesh file '{file}' has no faces; export it again, with its polygons.")
+    scale = unit_of_extent(raw.points, file) if scale is None else scale
+    part = np.zeros(len(raw.points), np.int8)
+    part[raw.faces] = raw.face_part.astype(np.int8)[:, None]
+    fields = {
+        "vertices_mm": raw.points * scale,
+        "faces": raw.faces.astype(np.int32),
         "part": part,
-        "part_names": tuple(part_names),
-        "markers": {str(k): int(v) for k, v in table["markers"].items()},
-        "lip_pairs": np.array(table.get("lip_pairs", []), np.int64).reshape(-1, 2),
+        "part_names": raw.part_names,
     }
+    return fields, scale
 
 
-def _parse_obj(file: Path) -> tuple[list[list[float]], list[list[int]], list[int], list[str]]:
-    """Return points, triangles, part of each triangle and part names; polygons become fans."""
-    points: list[list[float]] = []
-    faces: list[list[int]] = []
-    face_part: list[int] = []
-    names: list[str] = []
-    current = "skin"
-    for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
-        words = line.split()
-        if not words:
-            continue
-        if words[0] == "v":
-            points.append([float(x) for x in words[1:4]])
-        elif words[0] in ("g", "o") and len(words) > 1:
-            current = words[1]
-        elif words[0] == "f":
-            if current not in names:
-                names.append(current)
-            corners = [_corner(w, len(points)) for w in words[1:]]
-            for a, b in itertools.pairwise(corners[1:]):
-                faces.append([corners[0], a, b])
-                face_part.append(names.index(current))
-    return points, faces, face_part, names or ["skin"]
+def unit_of_extent(points: FloatArray, file: Path) -> float:
+    """Return how many mm the unit of a mesh is, told by its greatest extent: mm, cm, dm or m.
+
+    Raises
+    ------
+    MeshError
+        In none of them it is a head of 80 to 800 mm.
+    """
+    extent = float(np.ptp(points, axis=0).max())
+    for scale in UNITS_MM.values():
+        if LEAST_HEAD_MM <= extent * scale < MOST_HEAD_MM:
+            return scale
+    raise MeshError(
+        f"The mesh '{file}' is {extent:.3g} units large, a head in {', '.join(UNITS_MM)} was expected; "
+        f"scale it, or give scale_to_mm in '{file.with_suffix('.markers.json').name}'."
+    )
 
 
-def _corner(word: str, n_points: int) -> int:
-    """Return the vertex index from 0 of "7/1/3" (from 1) or "-1" (from the end)."""
-    number = int(word.split("/")[0])
-    return number - 1 if number > 0 else n_points + number
+def _picked(pick: Any, vertices_mm: FloatArray, unit_mm: float) -> int:
+    """Return the vertex of a pick: its number, or the one nearest to a place in units of the file."""
+    if isinstance(pick, list):
+        place = np.array(pick, float).reshape(3) * unit_mm
+        return int(np.argmin(np.sum((vertices_mm - place) ** 2, axis=1)))
+    return int(pick)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from corpus_tools.config import ConfigBase
 from corpus_tools.core import FloatArray, Mesh, MeshError, Trajectory, counted
-from corpus_tools.mesh import DEFORMERS, Binding, mesh_by_name_or_file
+from corpus_tools.mesh import DEFORMERS, Binding, mesh_by_name_or_file, refuse_fatal
 from corpus_tools.pipeline.opened import OpenCorpus
 from corpus_tools.pipeline.threads import one_thread
 from corpus_tools.retarget import Retargeter, prepare_retarget
@@ -90,6 +90,7 @@ def prepare_head(corpus: OpenCorpus, mesh: str | Mesh, config: ConfigBase) -> He
             f"The markers of the mesh '{target.name}' span {span_mm:.3g} mm, where a face of "
             f"{LEAST_SPAN_MM:g} to {MOST_SPAN_MM:g} mm was expected; scale it to mm."
         )
+    refuse_fatal(target)
     columns = [corpus.markers.index(n) for n in names]
     deformer = DEFORMERS[config.deform.deformer]
     try:
