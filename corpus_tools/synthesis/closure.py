@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +19,8 @@ HOLD_S = 0.042
 a film of 30 frames a second shows one of its frames)."""
 MIN_FLANK_S = 0.07
 EXTRA_FLANK_S = 0.04
+LEAST_FLANK_S = 0.04
+"""Flanks that end before the centre of a short vowel are no shorter: a frame of video (our choice)."""
 PRESSED_MM = 0.5
 """How far beyond a closed mouth the projection may press the lips, mm (our choice: the skin's give)."""
 
@@ -49,10 +51,21 @@ def closure_direction(functional: FloatArray, components: FloatArray, variances:
     return np.asarray(((a * variances) @ components / strength).reshape(functional.shape))
 
 
-def _bump(times_s: FloatArray, first_s: float, last_s: float, flank_s: float) -> FloatArray:
-    """Return 1 from `first_s` to `last_s`, and cos^2 flanks that take `flank_s` on both sides."""
-    beyond = np.maximum(first_s - times_s, times_s - last_s)
-    return np.asarray(np.cos(0.5 * np.pi * np.clip(beyond / flank_s, 0.0, 1.0)) ** 2)
+def _bump(times_s: FloatArray, first_s: float, last_s: float, flanks_s: tuple[float, float]) -> FloatArray:
+    """Return 1 from `first_s` to `last_s`, and cos^2 flanks that take `flanks_s` before and after."""
+    beyond = np.maximum((first_s - times_s) / flanks_s[0], (times_s - last_s) / flanks_s[1])
+    return np.asarray(np.cos(0.5 * np.pi * np.clip(beyond, 0.0, 1.0)) ** 2)
+
+
+def _flanks(
+    phone: Interval, first_s: float, last_s: float, vowels: Sequence[Interval]
+) -> tuple[float, float]:
+    """Return how long the flanks are: as those of a natural bilabial, but over at the centre of a vowel."""
+    usual = max(MIN_FLANK_S, 0.5 * phone.duration_s + EXTRA_FLANK_S)
+    before = [first_s - v.centre_s for v in vowels if v.centre_s < phone.start_s]
+    after = [v.centre_s - last_s for v in vowels if v.centre_s > phone.end_s]
+    left, right = (max(LEAST_FLANK_S, min([usual, *found])) for found in (before, after))
+    return left, right
 
 
 def _pressed(beyond_mm: FloatArray) -> FloatArray:
@@ -79,6 +92,7 @@ def close_lips(
     phones: Iterable[Interval],
     *,
     labels: Collection[str],
+    vowels: Collection[str] = (),
     functional: FloatArray,
     direction: FloatArray,
     target_mm: float,
@@ -92,8 +106,9 @@ def close_lips(
     The lips are held within `hold_mm` for `hold_s` (or the phone, if it is shorter), where in the phone that
     takes least, and touch, `target_mm`, at the moment that lies nearest to it: the face is moved along
     `direction` under a bump with cos^2 flanks as wide as those of a natural bilabial, max(70 ms, half the
-    phone + 40 ms). Lips are only ever closed, never opened, and never pressed
-    together by more than :data:`PRESSED_MM`; times without a bilabial near them do not change.
+    phone + 40 ms), but over at the centre of the next vowel, which is not to be closed too. Lips are only
+    ever closed, never opened, and never pressed together by more than :data:`PRESSED_MM`; times without a
+    bilabial near them do not change.
 
     Parameters
     ----------
@@ -101,6 +116,8 @@ def close_lips(
     phones : iterable of Interval
     labels : collection of str
         The phones: bilabials; or labiodentals, with the way from the lower lip to the teeth as aperture.
+    vowels : collection of str
+        Phones whose centres the flanks stay away from, to 40 ms beside the closure.
     functional : (n_markers, 3)
         Weights of the signed aperture.
     direction : (n_markers, 3)
@@ -126,7 +143,8 @@ def close_lips(
     gain = float((direction * functional).sum())
     n_held = 1 + math.floor(hold_s / float(np.diff(times[:2]).sum() or 1.0) + 1e-9)
     goals = ((n_held, target_mm if hold_mm is None else max(hold_mm, target_mm)), (1, target_mm))
-    lips = [p for p in phones if p.text in labels]
+    spoken = list(phones)
+    lips, open_ = ([p for p in spoken if p.text in kind] for kind in (labels, vowels))
     moved: set[Interval] = set()
     for _ in range(iterations if gain > 0 else 0):
         for phone, (n, goal_mm) in itertools.product(lips, goals):
@@ -137,8 +155,8 @@ def close_lips(
             if excess <= tolerance_mm:
                 continue
             first, last = times[inside[[at, at + n - 1]]].tolist()
-            flank = max(MIN_FLANK_S, 0.5 * phone.duration_s + EXTRA_FLANK_S)
-            wanted = aperture - excess * _bump(times, first, last, flank)
+            flanks = _flanks(phone, first, last, open_)
+            wanted = aperture - excess * _bump(times, first, last, flanks)
             reached = np.minimum(aperture, target_mm + _pressed(wanted - target_mm))
             values -= ((aperture - reached) / gain)[:, None, None] * direction
             aperture = reached

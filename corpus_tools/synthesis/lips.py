@@ -110,6 +110,7 @@ def make_contacts(
                 trajectory,
                 utterance.phones,
                 labels=labels,
+                vowels=phones.vowels,
                 functional=contact.functional,
                 direction=contact.direction,
                 target_mm=target_mm,

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from corpus_tools.core import Interval, Trajectory
 from corpus_tools.synthesis import close_lips, closure_direction
-from corpus_tools.synthesis.closure import HOLD_S, PRESSED_MM
+from corpus_tools.synthesis.closure import HOLD_S, LEAST_FLANK_S, PRESSED_MM
 from tests.strategies.fragments import seeds
 
 NAMES = ("lip_in1", "lip_in7", "chin3", "brow0")
@@ -190,3 +190,16 @@ def test_a_phone_shorter_than_a_frame_closes_too():
     phones = timeline(["SIL", "A", "P", "A", "SIL"], [0.3, 0.2021, 0.002, 0.2, 0.3])
     after = close(speak(lambda t: np.full(len(t), 4.0), phones), phones)
     assert aperture(after.values_mm).min() == pytest.approx(TARGET_MM)
+
+
+@given(sentences())
+def test_a_vowel_is_left_alone_from_its_centre_on(sentence):
+    """A mouth that a bilabial shuts is open again at the centre of a vowel that is long enough."""
+    phones, opening = sentence
+    before = speak(opening, phones)
+    after = close(before, phones, vowels=("A",))
+    change = np.abs(aperture(after.values_mm) - aperture(before.values_mm))
+    for k, phone in enumerate(phones):
+        beside = {phones[k - 1].text, phones[k + 1].text} if phone.text == "A" else set()
+        if beside & set(BILABIALS) and phone.duration_s >= 2 * LEAST_FLANK_S:
+            assert np.interp(phone.centre_s, after.times_s, change) < 0.1
