@@ -18,13 +18,16 @@ from corpus_tools.mesh.files import (
     UNITS_MM,
     mesh_by_name_or_file,
     read_mesh,
+    read_picks,
     read_surface,
     unit_of_extent,
     write_mesh,
 )
 from corpus_tools.mesh.jaw import JAW_PARTS, jaw_hinge_mm, jaw_motion
+from corpus_tools.mesh.landmarks import FaceLandmarks, find_landmarks
 from corpus_tools.mesh.lips import LOWER_LIP, UPPER_LIP, close_lips, lower_side, signed_lip_aperture_mm
 from corpus_tools.mesh.neck import level_neck, neck_rim, with_level_neck
+from corpus_tools.mesh.proposal import open_lips, propose_markers, ready_to_speak
 from corpus_tools.mesh.rbf import DISPLACEMENT_KERNELS, displacement_basis
 from corpus_tools.mesh.regions import SkinRegion, skin_regions
 from corpus_tools.mesh.surface import ControlSurface
@@ -45,6 +48,7 @@ __all__ = [
     "Binding",
     "Chart",
     "ControlSurface",
+    "FaceLandmarks",
     "LinearBinding",
     "MeshFault",
     "PatchBinding",
@@ -62,6 +66,7 @@ __all__ = [
     "displacement_basis",
     "edge_loop",
     "edges_of",
+    "find_landmarks",
     "geodesic_mm",
     "inner_lip_ring",
     "jaw_hinge_mm",
@@ -70,9 +75,13 @@ __all__ = [
     "lower_side",
     "mesh_by_name_or_file",
     "neck_rim",
+    "open_lips",
     "open_mouth_chart",
+    "propose_markers",
     "read_mesh",
+    "read_picks",
     "read_surface",
+    "ready_to_speak",
     "refuse_fatal",
     "signed_lip_aperture_mm",
     "skin_regions",

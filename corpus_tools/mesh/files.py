@@ -12,12 +12,20 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from corpus_tools.core import FloatArray, Mesh, MeshError, atomic_file
+from corpus_tools.core import FloatArray, IntArray, Mesh, MeshError, atomic_file
 from corpus_tools.mesh.bundle import CHARACTERS, bundled_head
 from corpus_tools.mesh.formats import SURFACE_READERS
 from corpus_tools.mesh.glb import read_glb
 
-__all__ = ["UNITS_MM", "mesh_by_name_or_file", "read_mesh", "read_surface", "unit_of_extent", "write_mesh"]
+__all__ = [
+    "UNITS_MM",
+    "mesh_by_name_or_file",
+    "read_mesh",
+    "read_picks",
+    "read_surface",
+    "unit_of_extent",
+    "write_mesh",
+]
 
 ARRAYS = ("vertices_mm", "faces", "part", "part_names", "marker_names", "marker_vertices", "lip_pairs")
 UNITS_MM = {"mm": 1.0, "cm": 10.0, "dm": 100.0, "m": 1000.0}
@@ -133,6 +141,29 @@ def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
         )
 
 
+def read_picks(
+    path: str | os.PathLike[str], vertices_mm: FloatArray, unit_mm: float
+) -> tuple[dict[str, int], IntArray]:
+    """Return markers and lip pairs of a file of picks, as beside a mesh: {"markers": ..., "lip_pairs": ...}.
+
+    Places [x, y, z] are in the unit of the mesh file; they stand for the nearest vertex.
+
+    Raises
+    ------
+    MeshError
+        The file is missing or no such table.
+    """
+    file = Path(path)
+
+    def read(given: Path) -> tuple[dict[str, int], IntArray]:
+        table = json.loads(given.read_text(encoding="utf-8"))
+        pairs = np.array(table.get("lip_pairs", []), np.int64).reshape(-1, 2)
+        picks = table.get("markers", {}).items()
+        return {str(k): _picked(v, vertices_mm, unit_mm) for k, v in picks}, pairs
+
+    return _guarded(read, file)
+
+
 def _check(mesh: Mesh, file: Path) -> None:
     n = mesh.n_vertices
     if mesh.vertices_mm.ndim != 2 or mesh.vertices_mm.shape[1] != 3 or not n:
@@ -173,12 +204,14 @@ def _read_surface_file(file: Path) -> dict[str, Any]:
     """Return the fields of a mesh of a surface file with the markers beside it."""
     beside = file.with_suffix(".markers.json")
     if not beside.is_file():
-        raise MeshError(f"Beside '{file}' there is no '{beside.name}'; it must name the marker vertices.")
+        raise MeshError(
+            f"Beside '{file}' there is no '{beside.name}'; it must name the marker "
+            "vertices; 'corpus-tools mesh propose' writes a first one."
+        )
     table = json.loads(beside.read_text(encoding="utf-8"))
     given = table.get("scale_to_mm")
     fields, unit = _surface_fields(file, None if given is None else float(given))
-    pairs = np.array(table.get("lip_pairs", []), np.int64).reshape(-1, 2)
-    markers = {str(k): _picked(v, fields["vertices_mm"], unit) for k, v in table["markers"].items()}
+    markers, pairs = read_picks(beside, fields["vertices_mm"], unit)
     return fields | {"markers": markers, "lip_pairs": pairs}
 
 
