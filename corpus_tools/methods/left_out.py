@@ -27,9 +27,8 @@ from corpus_tools.synthesis.joins import peaks_at
 
 __all__ = ["Blend", "LeftOut", "Score", "Search", "score_of"]
 
-PEAK_SHARE = 0.25
-"""How a per cent of join peaks counts against one of error (our choice: between greedy and Viterbi peaks
-differ about five times as much as errors do, .69 to .95)."""
+JOIN_SHARE = 0.1
+"""How joins count against error: from 1 to 0 of excess a sentence is worth 7 % of error (our choice)."""
 
 Search = Callable[..., Selection]
 Blend = Mapping[str, Any]
@@ -43,26 +42,27 @@ class Score:
     ----------
     error_mm : float
         RMSE of lips and chin in speech, mean over sentences.
-    join_peak : float
-        Mean over joins of the peak acceleration around them, over the natural 95th percentile of frames; 1
-        without joins.
+    join_excess : float
+        By how much peak accelerations around joins pass the natural 95th percentile of frames, in shares of
+        it, summed over the joins of a sentence and averaged over sentences. A mean over joins would reward
+        many small ones.
     dynamic_range : float
         Spread made over spread recorded, mean over sentences; 1 is natural.
     """
 
     error_mm: float
-    join_peak: float
+    join_excess: float
     dynamic_range: float
 
     @property
     def loss(self) -> float:
-        """Log error + a quarter of the log join peak + how far the log range is from 0.
+        """Log error + .1 log(1 + join excess) + how far the log range is from 0.
 
         Error alone would choose what is near to everything: a mean has less of it than the speaker's own
         repetition (decision 010).
         """
-        error, peak, spread = np.log(np.maximum([self.error_mm, self.join_peak, self.dynamic_range], 1e-9))
-        return float(error + PEAK_SHARE * peak + abs(spread))
+        error, spread = np.log(np.maximum([self.error_mm, self.dynamic_range], 1e-9))
+        return float(error + JOIN_SHARE * np.log1p(self.join_excess) + abs(spread))
 
 
 class LeftOut:
@@ -103,10 +103,7 @@ class LeftOut:
         return self.search(self.model, utterance, exclude=[utterance.name], n_rejected=0, **weights)
 
     def shares(self, weights: Mapping[str, float]) -> FloatArray:
-        """Return how each sentence turns out with these weights, (n_sentences, 4).
-
-        Error, mm; spread over that recorded; sum of the peaks at joins over the natural one; number of joins.
-        """
+        """Return how each sentence turns out with these weights: the parts of a :class:`Score`, (n, 3)."""
         return np.array([self._share(r, self._choose(r.utterance, weights)) for r in self.recordings])
 
     def _share(self, recording: Recording, selection: Selection) -> FloatArray:
@@ -140,11 +137,11 @@ class LeftOut:
         made = made[np.clip(nearest, 0, len(made) - 1)]
         error = float(np.sqrt(((made - truth) ** 2).sum(axis=2).mean()))
         spread = made.var(axis=0).sum() / max(float(truth.var(axis=0).sum()), 1e-12)
-        return np.array([error, np.sqrt(spread), joins.sum() / self.p95_mm_s2, len(joins)])
+        excess = np.maximum(joins / self.p95_mm_s2 - 1.0, 0.0).sum()
+        return np.array([error, excess, np.sqrt(spread)])
 
 
 def score_of(shares: FloatArray) -> Score:
-    """Return the score of sentences together, (n_sentences, 4) as of :meth:`LeftOut.shares`."""
-    error, spread, _, _ = shares.mean(axis=0)
-    peaks, joins = shares[:, 2:].sum(axis=0)
-    return Score(float(error), float(peaks / joins) if joins else 1.0, float(spread))
+    """Return the score of sentences together, (n_sentences, 3) as of :meth:`LeftOut.shares`."""
+    error, excess, spread = shares.mean(axis=0).tolist()
+    return Score(error, excess, spread)
