@@ -24,7 +24,7 @@ TUNED = ("duration", "context", "position", "stress", "velocity", "acceleration"
 few stand-ins and flagged frames occur to tell their weights from (our choice)."""
 
 MULTIPLIERS = (0.0, 0.5, 2.0)
-FIRST = (0.1, 0.3)
+FIRST = (0.1, 0.3, 1.0)
 """What is tried of a weight: multiples of it; these values where it is 0."""
 
 ROUNDS = 2
