@@ -53,6 +53,10 @@ class _Shown:
     def __init__(self, actor: Any, part: DrawnPart) -> None:
         self.part = part
         self.surface = actor.mapper.dataset.copy()
+        if self.part.colours is not None:
+            self.surface.set_active_scalars(
+                "colour"
+            )  # else the normals of the last part would be its colours
         actor.mapper.SetInputData(self.surface)  # ours: pyvista may put a filter before the mapper
 
     def show(self, vertices_mm: FloatArray) -> None:

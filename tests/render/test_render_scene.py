@@ -1,6 +1,7 @@
 """Pictures of the head: something is drawn, parts have their colours, lips open where they should."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -157,3 +158,12 @@ def test_a_plain_mesh_without_markers_is_drawn_too():
     mesh = Mesh("ball", np.asarray(ball.points, float), faces, np.zeros(ball.n_points, np.int8))
     image = picture(snapshot(mesh, size=(100, 100)))
     assert 0.2 < (np.abs(image - image[0, 0]).sum(axis=2) > 30).mean() < 0.9
+
+
+def test_a_mesh_of_skin_alone_moves_in_the_colour_of_skin(head):
+    """The last part was drawn in the colours of its normals while it moved."""
+    skin = head.faces[head.part_mask("skin")[head.faces].all(axis=1)]
+    alone = replace(head, faces=skin, part=np.zeros_like(head.part), part_names=("skin",))
+    with MovingHead(alone, alone.vertices_mm, size=(120, 90)) as moving:
+        red, green, blue = moving.draw(alone.vertices_mm)[30, 60].astype(int)
+    assert red > green > blue
