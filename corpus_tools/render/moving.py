@@ -54,9 +54,7 @@ class _Shown:
         self.part = part
         self.surface = actor.mapper.dataset.copy()
         if self.part.colours is not None:
-            self.surface.set_active_scalars(
-                "colour"
-            )  # else the normals of the last part would be its colours
+            self.surface.set_active_scalars("colour")  # else normals of the last part are colours
         actor.mapper.SetInputData(self.surface)  # ours: pyvista may put a filter before the mapper
 
     def show(self, vertices_mm: FloatArray) -> None:

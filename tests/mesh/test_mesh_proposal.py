@@ -10,15 +10,22 @@ from scipy.spatial import cKDTree
 
 from corpus_tools.core import Mesh, MeshError
 from corpus_tools.mesh import (
+    DEFORMERS,
+    LOWER_LIP,
+    SkinRegion,
     bundled_head,
     closing_faces,
+    edges_of,
     find_landmarks,
     open_lips,
     propose_markers,
     read_surface,
     ready_to_speak,
+    signed_lip_aperture_mm,
+    skin_regions,
     vertex_normals,
 )
+from corpus_tools.mesh.lips import lip_distances_mm
 
 MESHES = Path(os.environ.get("SPEECH_MESHES", "no folder"))
 LOST = np.zeros((0, 2), np.int64)
@@ -100,6 +107,32 @@ def test_lips_meet_and_are_open(case):
     gap = v[ready.lip_pairs[:, 0], 1] - v[ready.lip_pairs[:, 1], 1]
     np.testing.assert_allclose(gap, 0.0, atol=0.2)
     assert not set(ready.lip_pairs[:, 0]) & set(ready.lip_pairs[:, 1])
+
+
+def test_an_open_mouth_parts_the_lips_and_tears_nothing(case):
+    """Half the way from lips to nose: every vertex near a lip goes with its own one, no edge is torn."""
+    mesh = ready_to_speak(case[2])[0]
+    names = tuple(mesh.markers)
+    v = mesh.vertices_mm
+    targets = v[list(mesh.markers.values())].copy()
+    span = v[mesh.markers["nose2"], 1] - v[mesh.markers["lip_in2"], 1]
+    drop = 0.5 * span
+    targets[[n in LOWER_LIP or n.startswith("chin") for n in names], 1] -= drop
+    targets[[n in ("lip_in0", "lip_in4", "lip_out0", "lip_out6") for n in names], 1] -= 0.35 * drop
+    binding = DEFORMERS["bid"](mesh, names)
+    moved = binding.apply(targets[None], rigid=binding.rigid(targets[None]))[0]
+    face = skin_regions(mesh) != SkinRegion.MOUTH
+    upper, lower = lip_distances_mm(mesh)
+    middle = np.abs(v[:, 0]) < 0.55 * np.abs(v[mesh.markers["lip_out0"], 0])
+    near = face & middle & (np.minimum(upper, lower) < 0.3 * span)
+    down = v[:, 1] - moved[:, 1]
+    assert not (near & (upper < lower - 0.05 * span) & (down > 0.5 * drop)).any()
+    assert not (near & (lower < upper - 0.05 * span) & (down < 0.5 * drop)).any()
+    edges = edges_of(mesh.faces)
+    edges = edges[face[edges].all(axis=1)]
+    before, after = (np.linalg.norm(x[edges[:, 0]] - x[edges[:, 1]], axis=1) for x in (v, moved))
+    assert (after - before).max() < 0.75 * drop
+    assert signed_lip_aperture_mm(moved, mesh)[0] > 0.5 * drop
 
 
 def test_the_place_and_size_of_a_head_do_not_matter():
