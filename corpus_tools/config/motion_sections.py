@@ -115,7 +115,9 @@ class RetargetSettings(Section):
     """Paper A section 6: the volume warp from the actor's neutral to the mesh."""
 
     kernel: str = Field("cubic", description="Radial kernel of the warp.")
-    smoothing: float = Field(1e-2, ge=0, description="Smoothing of the warp, in a unit box.")
+    smoothing: Annotated[float, Field(ge=0)] | Literal["auto"] = Field(
+        1e-2, description="Smoothing of the warp, in a unit box; auto: what misses left-out landmarks least."
+    )
     contact: bool = Field(True, description="Keep the lips from passing through each other.")
 
 

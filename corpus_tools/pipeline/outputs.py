@@ -9,7 +9,7 @@ import math
 import platform
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from corpus_tools.pipeline.code import code_hash, library_versions
 from corpus_tools.pipeline.head import Head
 from corpus_tools.pipeline.speaking import speech_facts
 from corpus_tools.pipeline.stages import Synthesis
+from corpus_tools.retarget import retarget_report
 from corpus_tools.synthesis import Contact
 
 __all__ = ["JOIN_COLUMNS", "write_motion", "write_synthesis"]
@@ -42,6 +43,11 @@ def write_motion(path: Path, trajectory: Trajectory) -> None:
         names=np.array(trajectory.names),
         flags=trajectory.flags,
     )
+
+
+def _retarget_facts(head: Head, trajectory: Trajectory) -> dict[str, Any]:
+    columns = [trajectory.names.index(n) for n in head.names]
+    return asdict(retarget_report(head.retargeter, np.asarray(trajectory.values_mm)[:, columns]))
 
 
 def _write_mesh(path: Path, head: Head, synthesis: Synthesis) -> None:
@@ -183,6 +189,7 @@ def write_synthesis(
             "request": request,
             "speech": speech_facts(utterance),
             "config": config.values(),
+            "retarget": _retarget_facts(head, synthesis.trajectory),
             "selection": _selection_rows(synthesis.selection, utterance),
             "selection_cost": synthesis.selection.total_cost,
             "history": [s.as_dict() for s in synthesis.trajectory.history],

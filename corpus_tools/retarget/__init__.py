@@ -8,6 +8,7 @@ from corpus_tools.retarget.contact import (
     pair_response,
 )
 from corpus_tools.retarget.markers import Retargeter, prepare_retarget, retarget
+from corpus_tools.retarget.report import RetargetReport, retarget_report
 from corpus_tools.retarget.warp import (
     WARP_KERNELS,
     FoldReport,
@@ -22,6 +23,7 @@ from corpus_tools.retarget.warp import (
 __all__ = [
     "WARP_KERNELS",
     "FoldReport",
+    "RetargetReport",
     "Retargeter",
     "VolumeWarp",
     "WarpKernel",
@@ -36,4 +38,5 @@ __all__ = [
     "pair_response",
     "prepare_retarget",
     "retarget",
+    "retarget_report",
 ]

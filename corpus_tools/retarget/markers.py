@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +12,7 @@ import numpy.typing as npt
 from corpus_tools.core import FloatArray, Mesh, MeshError, frozen
 from corpus_tools.core.capture import region_of
 from corpus_tools.retarget.contact import contact_solver, keep_lips_apart, lip_marker_pairs, pair_response
-from corpus_tools.retarget.warp import FoldReport, VolumeWarp, fit_volume_warp, fold_check
+from corpus_tools.retarget.warp import FoldReport, VolumeWarp, choose_smoothing, fit_volume_warp, fold_check
 
 __all__ = ["Retargeter", "prepare_retarget", "retarget"]
 
@@ -91,7 +92,7 @@ def prepare_retarget(
     mesh: Mesh,
     *,
     kernel: str = "cubic",
-    smoothing: float = 1e-2,
+    smoothing: float | Literal["auto"] = 1e-2,
     contact: bool = True,
     seal_mm: float = 0.0,
     soft_mm: float = 0.5,
@@ -105,7 +106,8 @@ def prepare_retarget(
     names : sequence of str, n_markers
     mesh : Mesh
     kernel, smoothing
-        See :func:`~corpus_tools.retarget.warp.fit_volume_warp`.
+        See :func:`~corpus_tools.retarget.warp.fit_volume_warp`; smoothing ``"auto"`` is that which misses
+        landmarks least that were left out (:func:`~corpus_tools.retarget.warp.choose_smoothing`).
     contact : bool
         Keep the lips from passing through each other.
     seal_mm, soft_mm : float, mm
@@ -126,6 +128,8 @@ def prepare_retarget(
         )
     neutral = np.asarray(neutral_mm, float)
     rest = mesh.vertices_mm[[mesh.markers[n] for n in names]]
+    if isinstance(smoothing, str):
+        smoothing = choose_smoothing(neutral, rest, kernel=kernel)
     warp = fit_volume_warp(neutral, rest, kernel=kernel, smoothing=smoothing)
     response = _response(lip_response, names, mesh)
     lips = np.array([region_of(n).startswith("lip") for n in names])
@@ -161,7 +165,7 @@ def retarget(
     mesh: Mesh,
     *,
     kernel: str = "cubic",
-    smoothing: float = 1e-2,
+    smoothing: float | Literal["auto"] = 1e-2,
     contact: bool = True,
     seal_mm: float = 0.0,
     soft_mm: float = 0.5,
