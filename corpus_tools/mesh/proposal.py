@@ -141,7 +141,7 @@ def _facing(mesh: Mesh, marks: FaceLandmarks) -> tuple[IntArray, IntArray]:
     meets = (gap < TOUCH * span) & (np.sum(normals[down] * normals[up[partner]], axis=1) < -0.3)
     if meets.sum() < N_LINE:
         _one_surface(mesh)
-    return down[meets], np.unique(up[partner[meets]])
+    return down[meets], np.unique(up[np.asarray(partner)[meets]])
 
 
 def _one_surface(mesh: Mesh) -> None:
