@@ -63,7 +63,8 @@ def test_a_text_gives_the_whole_folder(spoken):
     assert speech["version"].startswith("eSpeak NG 1.")
     assert "espeakng-loader" in speech["version"]
     assert last_json(out)["speech"] == speech
-    assert manifest["config"]["speech"] == {"engine": "espeak", "language": "", "voice": "", "rate": 1.0}
+    spoken = {"engine": "espeak", "language": "", "sound": "voice", "voice": "", "rate": 1.0}
+    assert manifest["config"]["speech"] == spoken
     labels, sound = read_labels(folder / "labels.TextGrid"), read_audio(folder / "speech.wav")
     assert [w.text for w in labels.tier("words") if w.text] == SENTENCE.split()
     assert sound.rate_hz == 22050
@@ -97,6 +98,7 @@ def test_equal_texts_give_equal_bytes_and_a_config_replays_them(tool, corpus, tm
         "language": "en-gb",
         "voice": "f2",
         "rate": 1.3,
+        "sound": "voice",
     }
 
 
